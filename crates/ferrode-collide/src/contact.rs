@@ -1,0 +1,137 @@
+//! What the narrow phase reports, and where it puts it.
+
+use ferrode_math::{ContactPoint, Vec3};
+
+/// A contact between two geoms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GeomContact {
+    /// Position, normal (into the first geom) and depth.
+    pub point: ContactPoint,
+    /// The part of the first geom that touches: the triangle of a mesh; −1 for other shapes.
+    pub side1: i32,
+    /// The part of the second geom that touches.
+    pub side2: i32,
+}
+
+impl GeomContact {
+    /// A contact of two shapes without parts.
+    #[inline]
+    pub fn new(position: Vec3, normal: Vec3, depth: f64) -> Self {
+        Self { point: ContactPoint { position, normal, depth }, side1: -1, side2: -1 }
+    }
+
+    /// The same contact seen from the other geom.
+    #[inline]
+    pub fn swapped(self) -> Self {
+        Self {
+            point: ContactPoint { normal: -self.point.normal, ..self.point },
+            side1: self.side2,
+            side2: self.side1,
+        }
+    }
+}
+
+/// What is asked of the narrow phase: ODE's `flags` in words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CollideOptions {
+    /// Most contacts wanted. Zero asks for nothing and gets nothing.
+    pub max_contacts: u16,
+    /// Any contact will do: only whether the shapes touch matters (`CONTACTS_UNIMPORTANT`).
+    pub unimportant: bool,
+}
+
+impl CollideOptions {
+    /// At most `max_contacts` contacts, good ones.
+    pub const fn new(max_contacts: u16) -> Self {
+        Self { max_contacts, unimportant: false }
+    }
+
+    /// From ODE's flags: the low 16 bits are the most contacts, bit 31 is `CONTACTS_UNIMPORTANT`.
+    pub const fn from_ode_flags(flags: u32) -> Self {
+        Self { max_contacts: (flags & 0xffff) as u16, unimportant: flags & 0x8000_0000 != 0 }
+    }
+}
+
+impl Default for CollideOptions {
+    /// As many contacts as there are, good ones.
+    fn default() -> Self {
+        Self::new(u16::MAX)
+    }
+}
+
+/// The end of a list of contacts to which one pair of shapes adds its own, up to the number asked for.
+#[derive(Debug)]
+pub struct Contacts<'a> {
+    list: &'a mut Vec<GeomContact>,
+    start: usize,
+    options: CollideOptions,
+}
+
+impl<'a> Contacts<'a> {
+    /// Adds to the end of `list`; what is already there stays as it is.
+    pub fn new(list: &'a mut Vec<GeomContact>, options: CollideOptions) -> Self {
+        let start = list.len();
+        Self { list, start, options }
+    }
+
+    /// What was asked for.
+    #[inline]
+    pub fn options(&self) -> CollideOptions {
+        self.options
+    }
+
+    /// Most contacts this pair may report.
+    #[inline]
+    pub fn capacity(&self) -> usize {
+        usize::from(self.options.max_contacts)
+    }
+
+    /// Contacts added so far.
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.list.len() - self.start
+    }
+
+    /// Whether none has been added.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether no more are wanted.
+    #[inline]
+    pub fn is_full(&self) -> bool {
+        self.len() >= self.capacity()
+    }
+
+    /// Adds a contact of shapes without parts, unless the list is full.
+    #[inline]
+    pub fn push(&mut self, position: Vec3, normal: Vec3, depth: f64) {
+        self.push_contact(GeomContact::new(position, normal, depth));
+    }
+
+    /// Adds a contact unless the list is full.
+    #[inline]
+    pub fn push_contact(&mut self, contact: GeomContact) {
+        if !self.is_full() {
+            self.list.push(contact);
+        }
+    }
+
+    /// The contacts added so far.
+    pub fn added(&mut self) -> &mut [GeomContact] {
+        &mut self.list[self.start..]
+    }
+
+    /// Keeps the first `n` of the contacts added.
+    pub fn truncate(&mut self, n: usize) {
+        self.list.truncate(self.start + n);
+    }
+
+    /// Turns the contacts added into those of the shapes in the other order.
+    pub fn swap(&mut self) {
+        for c in self.added() {
+            *c = c.swapped();
+        }
+    }
+}

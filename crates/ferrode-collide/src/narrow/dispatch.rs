@@ -1,0 +1,124 @@
+//! The pair matrix.
+
+use super::*;
+use crate::{CollideOptions, Contacts, Frame, GeomContact, Shape, ShapeKind};
+use ferrode_math::Pose;
+
+type Collider = fn(&Shape, &Frame, &Shape, &Frame, &mut Contacts<'_>);
+
+/// A table entry: calls `$f` with the two shapes unpacked.
+macro_rules! pair {
+    ($a:ident, $b:ident, $f:ident) => {{
+        fn run(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+            if let (Shape::$a(a), Shape::$b(b)) = (a, b) {
+                $f(a, fa, b, fb, out);
+            }
+        }
+        Some(run as Collider)
+    }};
+}
+
+/// A table entry: calls `$f` with the shapes in the other order and turns its contacts round.
+macro_rules! swap {
+    ($b:ident, $a:ident, $f:ident) => {{
+        fn run(b: &Shape, fb: &Frame, a: &Shape, fa: &Frame, out: &mut Contacts<'_>) {
+            if let (Shape::$a(a), Shape::$b(b)) = (a, b) {
+                $f(a, fa, b, fb, out);
+                out.swap();
+            }
+        }
+        Some(run as Collider)
+    }};
+}
+
+const NONE: Option<Collider> = None;
+const KINDS: usize = 6;
+
+/// Row: the first shape; column: the second.
+#[rustfmt::skip]
+static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
+    // Sphere
+    [
+        pair!(Sphere, Sphere, sphere_sphere),
+        pair!(Sphere, Cuboid, sphere_cuboid),
+        swap!(Sphere, Capsule, capsule_sphere),
+        NONE,
+        pair!(Sphere, Plane, sphere_plane),
+        NONE,
+    ],
+    // Cuboid
+    [
+        swap!(Cuboid, Sphere, sphere_cuboid),
+        pair!(Cuboid, Cuboid, cuboid_cuboid),
+        swap!(Cuboid, Capsule, capsule_cuboid),
+        NONE,
+        pair!(Cuboid, Plane, cuboid_plane),
+        NONE,
+    ],
+    // Capsule
+    [
+        pair!(Capsule, Sphere, capsule_sphere),
+        pair!(Capsule, Cuboid, capsule_cuboid),
+        pair!(Capsule, Capsule, capsule_capsule),
+        NONE,
+        pair!(Capsule, Plane, capsule_plane),
+        NONE,
+    ],
+    // Cylinder
+    [
+        NONE,
+        NONE,
+        NONE,
+        NONE,
+        NONE,
+        NONE,
+    ],
+    // Plane
+    [
+        swap!(Plane, Sphere, sphere_plane),
+        swap!(Plane, Cuboid, cuboid_plane),
+        swap!(Plane, Capsule, capsule_plane),
+        NONE,
+        NONE,
+        NONE,
+    ],
+    // Ray
+    [NONE, NONE, NONE, NONE, NONE, NONE],
+];
+
+fn index(kind: ShapeKind) -> usize {
+    kind as usize
+}
+
+/// Whether shapes of these kinds can touch at all: two planes, or two rays, cannot.
+pub fn collides(a: ShapeKind, b: ShapeKind) -> bool {
+    PAIRS[index(a)][index(b)].is_some()
+}
+
+/// Finds the contacts of two shapes, adds them to `out` and returns their number.
+///
+/// Normals point into `a`. `out` keeps what it holds; nothing is allocated if it has room.
+pub fn collide(
+    a: (&Shape, &Pose),
+    b: (&Shape, &Pose),
+    options: CollideOptions,
+    out: &mut Vec<GeomContact>,
+) -> usize {
+    collide_frames((a.0, &Frame::from(a.1)), (b.0, &Frame::from(b.1)), options, out)
+}
+
+/// As [`collide`], for callers who have the rotation matrices at hand.
+pub fn collide_frames(
+    a: (&Shape, &Frame),
+    b: (&Shape, &Frame),
+    options: CollideOptions,
+    out: &mut Vec<GeomContact>,
+) -> usize {
+    let Some(collider) = PAIRS[index(a.0.kind())][index(b.0.kind())] else { return 0 };
+    if options.max_contacts == 0 {
+        return 0;
+    }
+    let mut contacts = Contacts::new(out, options);
+    collider(a.0, a.1, b.0, b.1, &mut contacts);
+    contacts.len()
+}

@@ -1,0 +1,30 @@
+use crate::{Contacts, Frame, Sphere};
+use ferrode_math::Vec3;
+
+/// Two balls: one contact, midway between the two surfaces on the line of centres.
+pub fn sphere_sphere(a: &Sphere, fa: &Frame, b: &Sphere, fb: &Frame, out: &mut Contacts<'_>) {
+    spheres(fa.position, a.radius(), fb.position, b.radius(), out);
+}
+
+/// The contact of two balls given by centre and radius; tells whether they touch.
+///
+/// With d = |c1 − c2|: normal (c1 − c2)/d, depth r1 + r2 − d, position c1 + normal (r2 − r1 − d)/2. Balls with one
+/// centre are pushed apart along x.
+#[inline]
+pub fn spheres(c1: Vec3, r1: f64, c2: Vec3, r2: f64, out: &mut Contacts<'_>) -> bool {
+    let line = c1 - c2;
+    let d = line.length();
+    let depth = r1 + r2 - d;
+    // Written so that a distance that is no number is no contact.
+    if !(depth >= 0.0) {
+        return false;
+    }
+    if d <= 0.0 {
+        out.push(c1, Vec3::X, depth);
+        return true;
+    }
+    let n = line * (1.0 / d);
+    let n = if n.is_finite() { n } else { line.normalized_or(Vec3::X) };
+    out.push(c1 + n * (0.5 * (r2 - r1 - d)), n, depth);
+    true
+}

@@ -1,0 +1,142 @@
+//! What geoms are made of.
+
+mod capsule;
+mod cuboid;
+mod cylinder;
+mod plane;
+mod ray;
+mod sphere;
+
+pub use capsule::Capsule;
+pub use cuboid::Cuboid;
+pub use cylinder::Cylinder;
+pub use plane::Plane;
+pub use ray::Ray;
+pub use sphere::Sphere;
+
+use crate::Frame;
+use core::fmt;
+use ferrode_math::{Aabb, Pose};
+
+/// A shape in its own coordinates; its place in the world comes with a pose.
+///
+/// Sizes are checked when a shape is made, so every value of this type can be collided.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Shape {
+    /// A ball.
+    Sphere(Sphere),
+    /// A box.
+    Cuboid(Cuboid),
+    /// A cylinder with hemispherical ends.
+    Capsule(Capsule),
+    /// A cylinder with flat ends.
+    Cylinder(Cylinder),
+    /// A half-space, fixed to the world.
+    Plane(Plane),
+    /// A ray of finite length.
+    Ray(Ray),
+}
+
+/// The kind of a shape: its row and column in the pair matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum ShapeKind {
+    /// [`Sphere`].
+    Sphere,
+    /// [`Cuboid`].
+    Cuboid,
+    /// [`Capsule`].
+    Capsule,
+    /// [`Cylinder`].
+    Cylinder,
+    /// [`Plane`].
+    Plane,
+    /// [`Ray`].
+    Ray,
+}
+
+impl Shape {
+    /// Which kind of shape this is.
+    pub fn kind(&self) -> ShapeKind {
+        match self {
+            Self::Sphere(_) => ShapeKind::Sphere,
+            Self::Cuboid(_) => ShapeKind::Cuboid,
+            Self::Capsule(_) => ShapeKind::Capsule,
+            Self::Cylinder(_) => ShapeKind::Cylinder,
+            Self::Plane(_) => ShapeKind::Plane,
+            Self::Ray(_) => ShapeKind::Ray,
+        }
+    }
+
+    /// The world box around the shape at `pose`.
+    pub fn aabb(&self, pose: &Pose) -> Aabb {
+        self.aabb_in(&Frame::from(pose))
+    }
+
+    /// The world box around the shape in `frame`.
+    pub fn aabb_in(&self, frame: &Frame) -> Aabb {
+        match self {
+            Self::Sphere(s) => s.aabb(frame),
+            Self::Cuboid(s) => s.aabb(frame),
+            Self::Capsule(s) => s.aabb(frame),
+            Self::Cylinder(s) => s.aabb(frame),
+            Self::Plane(s) => s.aabb(),
+            Self::Ray(s) => s.aabb(frame),
+        }
+    }
+
+    /// Volume in cubic metres; infinite for a plane, zero for a ray.
+    pub fn volume(&self) -> f64 {
+        match self {
+            Self::Sphere(s) => s.volume(),
+            Self::Cuboid(s) => s.volume(),
+            Self::Capsule(s) => s.volume(),
+            Self::Cylinder(s) => s.volume(),
+            Self::Plane(_) => f64::INFINITY,
+            Self::Ray(_) => 0.0,
+        }
+    }
+
+    /// Whether the shape can be moved; a plane cannot.
+    pub fn is_placeable(&self) -> bool {
+        !matches!(self, Self::Plane(_))
+    }
+
+    /// Whether a size is zero such that spaces skip the shape (ODE's zero-sized geoms): a sphere or capsule without
+    /// radius, a box without a side, a cylinder without radius or length.
+    pub fn is_zero_sized(&self) -> bool {
+        match self {
+            Self::Sphere(s) => s.radius() == 0.0,
+            Self::Cuboid(s) => s.sides().to_array().contains(&0.0),
+            Self::Capsule(s) => s.radius() == 0.0,
+            Self::Cylinder(s) => s.radius() == 0.0 || s.length() == 0.0,
+            Self::Plane(_) | Self::Ray(_) => false,
+        }
+    }
+}
+
+/// A shape that cannot be: names the size that is wrong and its value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeError {
+    /// What is wrong, as `sphere radius`.
+    pub what: &'static str,
+    /// The value that was given.
+    pub value: f64,
+}
+
+impl fmt::Display for ShapeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} must be a finite number, not negative: {}", self.what, self.value)
+    }
+}
+
+impl core::error::Error for ShapeError {}
+
+/// Largest size: its square, and the square of a sum of a few such, stays finite.
+const LARGEST: f64 = 1e150;
+
+/// A size must be finite and not negative.
+fn checked_size(what: &'static str, value: f64) -> Result<f64, ShapeError> {
+    if (0.0..=LARGEST).contains(&value) { Ok(value) } else { Err(ShapeError { what, value }) }
+}

@@ -1,0 +1,68 @@
+use super::ShapeError;
+use ferrode_math::{Aabb, Vec3};
+
+/// The half-space `normal · x ≤ d` of the world: everything below the plane is solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    normal: Vec3,
+    d: f64,
+}
+
+impl Plane {
+    /// The plane a x + b y + c z = d in world coordinates, with normal (a, b, c) of any length but zero.
+    pub fn new(normal: Vec3, d: f64) -> Result<Self, ShapeError> {
+        let length = normal.length();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(ShapeError { what: "length of a plane's normal", value: length });
+        }
+        if !d.is_finite() {
+            return Err(ShapeError { what: "plane distance", value: d });
+        }
+        let scale = 1.0 / length;
+        let (n, d) =
+            if scale.is_finite() { (normal * scale, d * scale) } else { (normal / length, d / length) };
+        if !d.is_finite() {
+            return Err(ShapeError { what: "plane distance over the length of its normal", value: d });
+        }
+        Ok(Self { normal: n, d })
+    }
+
+    /// The plane through `point`.
+    pub fn through(point: Vec3, normal: Vec3) -> Result<Self, ShapeError> {
+        Self::new(normal, normal.dot(point))
+    }
+
+    /// Unit normal, out of the solid side.
+    #[inline]
+    pub fn normal(&self) -> Vec3 {
+        self.normal
+    }
+
+    /// Distance of the plane from the world's origin along the normal.
+    #[inline]
+    pub fn d(&self) -> f64 {
+        self.d
+    }
+
+    /// Depth of a point below the plane; negative above.
+    #[inline]
+    pub fn depth(&self, p: Vec3) -> f64 {
+        self.d - self.normal.dot(p)
+    }
+
+    /// The world box around the half-space: bounded only for an axis-parallel normal, and then on one side.
+    pub fn aabb(&self) -> Aabb {
+        let mut aabb = Aabb::EVERYTHING;
+        let n = self.normal;
+        for i in 0..3 {
+            if n[(i + 1) % 3] == 0.0 && n[(i + 2) % 3] == 0.0 {
+                if n[i] > 0.0 {
+                    aabb.max[i] = self.d;
+                } else {
+                    aabb.min[i] = -self.d;
+                }
+            }
+        }
+        aabb
+    }
+}

@@ -1,0 +1,50 @@
+//! Spaces: which geoms come near each other (broad phase).
+//!
+//! A space is a data structure over *proxies*: numbers with a box and bits, kept in a [`ProxyTable`] that the caller
+//! owns. It knows no shapes. Each kind reports pairs in the order in which ODE's space of that kind does, because
+//! the order of contacts decides what `Quick` computes.
+
+mod hash;
+mod proxy;
+mod simple;
+
+pub use hash::HashSpace;
+pub use proxy::{Members, Proxy, ProxyId, ProxyTable};
+pub use simple::SimpleSpace;
+
+/// What every kind of space can do.
+///
+/// A proxy is in at most one space of those that share a table. After changing boxes, tell the space by
+/// [`moved`](Self::moved), then call [`update`](Self::update) before the next question.
+pub trait BroadPhase {
+    /// Adds a proxy, at the head of the list of members.
+    fn insert(&mut self, table: &mut ProxyTable, id: ProxyId);
+    /// Removes a proxy.
+    fn remove(&mut self, table: &mut ProxyTable, id: ProxyId);
+    /// Notes that a proxy's box is about to change; it goes to the head of the list.
+    fn moved(&mut self, table: &mut ProxyTable, id: ProxyId);
+    /// Brings the structure up to date with the boxes in the table.
+    fn update(&mut self, table: &ProxyTable);
+    /// Reports every pair of members that may touch, once.
+    fn collide(&self, table: &ProxyTable, scratch: &mut Scratch, report: &mut dyn FnMut(ProxyId, ProxyId));
+    /// Reports every enabled member that may touch `proxy`, which need not be in this space.
+    fn collide_with(&self, table: &ProxyTable, proxy: &Proxy, report: &mut dyn FnMut(ProxyId));
+    /// The members, newest or last moved first.
+    fn members(&self) -> &Members;
+}
+
+/// Memory that a search needs while it runs; kept between searches so that nothing is allocated.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    pub(crate) hash: hash::HashScratch,
+}
+
+/// Tests `proxy` against every member in list order: what most of ODE's spaces do.
+fn scan(members: &Members, table: &ProxyTable, proxy: &Proxy, report: &mut dyn FnMut(ProxyId)) {
+    for id in members.iter(table) {
+        let member = table.get(id);
+        if member.enabled && crate::filter::passes(proxy, member) {
+            report(id);
+        }
+    }
+}
