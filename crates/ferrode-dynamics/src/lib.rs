@@ -1,2 +1,53 @@
+//! Bodies, masses, joints and steppers of the [Ferrode](https://docs.rs/ferrode) rigid-body engine.
+//!
+//! This crate knows nothing of shapes: contacts come in as contact joints, from whatever collision detection the
+//! caller uses. The `ferrode` crate puts both together.
+//!
+//! ```
+//! use ferrode_dynamics::{Stepper, World};
+//! use ferrode_math::Vec3;
+//! # fn main() -> Result<(), ferrode_dynamics::Error> {
+//! let mut world = World::new();
+//! world.set_gravity(Vec3::new(0.0, 0.0, -9.81))?;
+//! let stone = world.create_body();
+//! world.body_mut(stone)?.set_position(Vec3::new(0.0, 0.0, 10.0))?;
+//! for _ in 0..100 {
+//!     world.step(Stepper::Direct, 0.01)?;
+//! }
+//! assert!(world.body(stone)?.position().z < 5.1);
+//! # Ok(()) }
+//! ```
 #![forbid(unsafe_code)]
-//! ferrode-dynamics
+
+mod arena;
+mod body;
+mod check;
+mod damping;
+mod ends;
+mod error;
+mod group;
+mod gyroscopic;
+mod integrate;
+mod island;
+mod joint;
+mod mass;
+mod report;
+mod rows;
+mod sleep;
+mod softness;
+mod solve;
+mod step;
+mod world;
+
+pub use body::{Body, BodyKey, FiniteRotation, MovedCallback};
+pub use damping::Damping;
+pub use error::Error;
+pub use group::GroupKey;
+pub use joint::*;
+pub use mass::Mass;
+pub use report::StepReport;
+pub use rows::{NO_FRICTION_INDEX, Row, RowKind};
+pub use sleep::AutoDisable;
+pub use softness::Softness;
+pub use step::Stepper;
+pub use world::{QuickSettings, World};

@@ -1,0 +1,28 @@
+//! Axes that joints share: set in world coordinates, kept in body coordinates.
+
+use crate::ends::Ends;
+use ferrode_math::{Quat, Vec3, real};
+
+/// A world vector, already of unit length, in the coordinates of the first and second body. `raw` is the caller's own
+/// vector: with one body ODE keeps it as given for the world's side, unnormalised.
+pub(crate) fn local_axes(ends: &Ends<'_>, unit: Vec3, raw: Vec3) -> [Vec3; 2] {
+    let first = ends.a().rotation.transpose_mul(unit);
+    let second = match ends.second {
+        Some(b) => b.rotation.transpose_mul(unit),
+        None => raw,
+    };
+    [first, second]
+}
+
+/// The angle of a relative rotation about a local unit axis, in [−π, π), by ODE's rule.
+///
+/// Rotation about other axes spoils the value: the magnitude of the whole rotation is reported with the sign of its
+/// component along the axis.
+pub(crate) fn hinge_angle(relative: Quat, axis: Vec3) -> f64 {
+    let u = relative.imaginary();
+    let m = u.length();
+    let theta = if u.dot(axis) >= 0.0 { real::atan2(m, relative.w) } else { real::atan2(m, -relative.w) };
+    let theta = 2.0 * theta;
+    let theta = if theta > core::f64::consts::PI { theta - 2.0 * core::f64::consts::PI } else { theta };
+    -theta
+}

@@ -1,0 +1,23 @@
+//! The slider joint.
+
+use super::JointModel;
+use crate::ends::{Ends, StepContext};
+use crate::rows::{JointRows, RowCount};
+
+/// The slider joint's data.
+#[derive(Clone, Debug)]
+pub struct Slider {}
+
+impl Slider {
+    pub(crate) fn new(_erp: f64, _cfm: f64) -> Self {
+        Self {}
+    }
+}
+
+impl JointModel for Slider {
+    fn row_count(&mut self, _ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
+        RowCount::default()
+    }
+
+    fn write_rows(&mut self, _ends: &Ends<'_>, _ctx: &StepContext, _out: &mut JointRows<'_>) {}
+}

@@ -1,0 +1,101 @@
+//! `Quick`: projected successive over-relaxation, in ODE's row order and with ODE's shuffles.
+
+use super::{FreeMotion, Solved, free_motions, right_hand_side};
+use crate::rows::NO_FRICTION_INDEX;
+use crate::step::Island;
+use crate::world::QuickSettings;
+use ferrode_lcp::sor::{InfTimesZero, NO_BODY, SorBody, SorParams, SorRow, SorWorkspace, solve_sor};
+use ferrode_math::random::OdeRandom;
+use ferrode_math::{Mat3, Vec3};
+
+/// Memory of the stepper.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Workspace {
+    free: Vec<FreeMotion>,
+    bodies: Vec<SorBody>,
+    rows: Vec<SorRow>,
+    sor: SorWorkspace,
+    solved: bool,
+}
+
+/// Finds the forces of an island's rows.
+pub(crate) fn solve(
+    island: &mut Island,
+    h: f64,
+    settings: &QuickSettings,
+    random: &mut OdeRandom,
+    work: &mut Workspace,
+) -> Solved {
+    let m = island.rows.len();
+    island.lambda.clear();
+    island.lambda.resize(m, 0.0);
+    work.solved = false;
+    if m == 0 {
+        return Solved::Completely;
+    }
+    let fps = 1.0 / h;
+    free_motions(&island.bodies, fps, &mut work.free);
+    work.bodies.clear();
+    work.bodies.extend(
+        island.bodies.iter().map(|b| SorBody { inv_mass: b.inv_mass, inv_inertia: flatten(&b.inv_inertia) }),
+    );
+    work.rows.clear();
+    for span in &island.spans {
+        for row in &island.rows[span.first..span.first + span.count.rows] {
+            let (a, b, c, d) = (row.linear1, row.angular1, row.linear2, row.angular2);
+            let findex = match row.friction_index {
+                NO_FRICTION_INDEX => -1,
+                local => span.first as i32 + local,
+            };
+            work.rows.push(SorRow {
+                j: [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z],
+                rhs: right_hand_side(row, span, fps, &work.free),
+                cfm: row.cfm * fps,
+                lo: row.lo,
+                hi: row.hi,
+                findex,
+                body: span.bodies,
+            });
+        }
+    }
+    const { assert!(NO_BODY == crate::arena::NIL) };
+    let params = SorParams {
+        iterations: settings.iterations,
+        over_relaxation: settings.over_relaxation,
+        inf_times_zero: if settings.infinite_friction_needs_contact {
+            InfTimesZero::Zero
+        } else {
+            InfTimesZero::Unbounded
+        },
+        dynamic: None,
+    };
+    let result = solve_sor(&work.bodies, &work.rows, &params, &mut |n| random.next_below(n), &mut work.sor);
+    match result {
+        Ok(report) if report.finite => {
+            island.lambda.copy_from_slice(work.sor.lambda());
+            work.solved = true;
+            Solved::Completely
+        }
+        // No forces at all rather than forces that are no numbers.
+        _ => Solved::Partly,
+    }
+}
+
+/// Velocities after the step: constraint forces as the iteration accumulated them, then all others.
+pub(crate) fn update_velocities(island: &mut Island, h: f64, work: &Workspace) {
+    if work.solved {
+        for (body, a) in island.bodies.iter_mut().zip(work.sor.acceleration()) {
+            body.frame.linear_velocity += Vec3::from_array(a.linear()) * h;
+            body.frame.angular_velocity += Vec3::from_array(a.angular()) * h;
+        }
+    }
+    for body in &mut island.bodies {
+        body.frame.linear_velocity += body.force * (h * body.inv_mass);
+        body.frame.angular_velocity += body.inv_inertia * (body.torque * h);
+    }
+}
+
+fn flatten(m: &Mat3) -> [f64; 9] {
+    let r = &m.rows;
+    [r[0][0], r[0][1], r[0][2], r[1][0], r[1][1], r[1][2], r[2][0], r[2][1], r[2][2]]
+}

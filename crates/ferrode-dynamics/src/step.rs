@@ -1,0 +1,362 @@
+//! One step: the table of contents of the engine.
+
+use crate::body::Body;
+use crate::ends::{Ends, Frame, StepContext};
+use crate::island::Islands;
+use crate::joint::Joint;
+use crate::rows::{JointRows, Row, RowCount, Wrench};
+use crate::solve::{direct, quick};
+use crate::{Error, StepReport, World, gyroscopic, integrate};
+use ferrode_math::random::OdeRandom;
+use ferrode_math::{Mat3, Vec3};
+
+/// How a step finds the constraint forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Stepper {
+    /// Exact: factorises the whole system and pivots (ODE's `dWorldStep`). For robots, mechanisms, high mass ratios.
+    Direct,
+    /// Iterative: sweeps over the rows (ODE's `dWorldQuickStep`). Fast, approximate.
+    #[default]
+    Quick,
+}
+
+/// A body as the solvers see it: in a dense array, in the order of its island.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SolverBody {
+    /// State at the start of the step.
+    pub frame: Frame,
+    pub inv_mass: f64,
+    /// World frame.
+    pub inv_inertia: Mat3,
+    pub force: Vec3,
+    pub torque: Vec3,
+}
+
+/// The rows of one joint within its island.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JointSpan {
+    /// Slot of the joint.
+    pub joint: u32,
+    /// Its bodies' places in the island's array, or `NIL`.
+    pub bodies: [u32; 2],
+    /// First row.
+    pub first: usize,
+    pub count: RowCount,
+}
+
+/// An island as the solvers see it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Island {
+    pub bodies: Vec<SolverBody>,
+    pub spans: Vec<JointSpan>,
+    pub rows: Vec<Row>,
+    /// Answer: a force per row.
+    pub lambda: Vec<f64>,
+    /// The world's slots of `bodies`.
+    slots: Vec<u32>,
+    /// Place of each of the world's bodies in `bodies`, or `NIL`.
+    place: Vec<u32>,
+}
+
+/// Memory that is kept from step to step. It holds no state: dropping it changes nothing.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    islands: Islands,
+    island: Island,
+    pub direct: direct::Workspace,
+    pub quick: quick::Workspace,
+}
+
+impl Clone for Scratch {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl World {
+    /// Advances the world by `h` seconds.
+    ///
+    /// Keep `h` constant: with varying steps resting contacts jitter (ODE manual, "Variable step size: don't!").
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a step that is not positive and finite; nothing is stepped then.
+    pub fn step(&mut self, stepper: Stepper, h: f64) -> Result<StepReport, Error> {
+        let mut random = self.random;
+        let report = self.step_with_random(stepper, h, &mut random);
+        self.random = random;
+        report
+    }
+
+    /// As [`World::step`], with a random generator of the caller's: ODE shares one among all its worlds.
+    ///
+    /// # Errors
+    /// As [`World::step`].
+    pub fn step_with_random(
+        &mut self,
+        stepper: Stepper,
+        h: f64,
+        random: &mut OdeRandom,
+    ) -> Result<StepReport, Error> {
+        crate::softness::step_size(h)?;
+        debug_assert_eq!(self.check(), Ok(()));
+        let mut report = StepReport::default();
+        let mut scratch = core::mem::take(&mut self.scratch);
+        let Scratch { islands, island, direct, quick } = &mut scratch;
+
+        self.quarantine_unusable_bodies(&mut report);
+        self.auto_disable_bodies(h);
+        self.find_islands(islands);
+        let ctx = self.step_context(h);
+        let (mut first_body, mut first_joint) = (0, 0);
+        for &(body_end, joint_end) in &islands.ends {
+            let bodies = &islands.bodies[first_body..body_end];
+            let joints = &islands.joints[first_joint..joint_end];
+            (first_body, first_joint) = (body_end, joint_end);
+
+            self.gather(bodies, joints, island);
+            self.apply_gravity(bodies, island);
+            self.apply_gyroscopic_torques(bodies, island, h);
+            self.count_rows(island, &ctx);
+            if stepper == Stepper::Direct {
+                direct::arrange(&mut island.spans);
+            }
+            self.write_rows(island, &ctx);
+            let solved = match stepper {
+                Stepper::Direct => direct::solve(island, h, direct),
+                Stepper::Quick => quick::solve(island, h, &self.params.quick, random, quick),
+            };
+            report.count_island(bodies.len(), island.rows.len(), solved);
+            self.write_feedback(island);
+            match stepper {
+                Stepper::Direct => direct::sum_forces(island, direct),
+                Stepper::Quick => quick::update_velocities(island, h, quick),
+            }
+            self.move_bodies(bodies, island, stepper, h, &mut report);
+        }
+        self.scratch = scratch;
+        Ok(report)
+    }
+
+    fn step_context(&self, h: f64) -> StepContext {
+        let p = &self.params;
+        StepContext {
+            h,
+            fps: 1.0 / h,
+            erp: p.erp,
+            cfm: p.cfm,
+            contact_max_correcting_velocity: p.contact_max_correcting_velocity,
+            contact_surface_layer: p.contact_surface_layer,
+        }
+    }
+
+    fn auto_disable_bodies(&mut self, h: f64) {
+        let mut index = self.body_list.first;
+        while index != crate::arena::NIL {
+            let body = self.bodies.at_mut(index);
+            body.update_auto_disable(h);
+            index = body.next;
+        }
+    }
+
+    /// Takes bodies out whose state or gathered force is not finite, before they spoil their islands.
+    fn quarantine_unusable_bodies(&mut self, report: &mut StepReport) {
+        let mut index = self.body_list.first;
+        while index != crate::arena::NIL {
+            let body = self.bodies.at_mut(index);
+            let next = body.next;
+            if body.enabled && !body.quarantined && !body.is_finite() {
+                body.quarantine(None);
+                report.quarantined.push(self.body_key(index));
+            }
+            index = next;
+        }
+    }
+
+    /// Copies an island's bodies into a dense array. A quarantined body at the end of a joint comes along as an immovable
+    /// one.
+    fn gather(&self, bodies: &[u32], joints: &[u32], island: &mut Island) {
+        use crate::arena::NIL;
+        for slot in island.slots.drain(..) {
+            island.place[slot as usize] = NIL;
+        }
+        island.place.resize(self.bodies.capacity(), NIL);
+        island.bodies.clear();
+        island.spans.clear();
+        let mut take = |index: u32| {
+            if island.place[index as usize] == NIL {
+                island.place[index as usize] = island.bodies.len() as u32;
+                island.slots.push(index);
+                island.bodies.push(SolverBody::new(self.bodies.at(index)));
+            }
+        };
+        bodies.iter().for_each(|body| take(*body));
+        for joint in joints {
+            for node in self.joints.at(*joint).nodes {
+                if node.body != NIL && self.bodies.at(node.body).quarantined {
+                    take(node.body);
+                }
+            }
+        }
+        let place = |body: u32| if body == NIL { NIL } else { island.place[body as usize] };
+        island.spans.extend(joints.iter().map(|joint| JointSpan {
+            joint: *joint,
+            bodies: self.joints.at(*joint).nodes.map(|node| place(node.body)),
+            first: 0,
+            count: RowCount::default(),
+        }));
+    }
+
+    fn apply_gravity(&self, bodies: &[u32], island: &mut Island) {
+        let g = self.params.gravity;
+        if g == Vec3::ZERO {
+            return;
+        }
+        for (index, solver_body) in bodies.iter().zip(&mut island.bodies) {
+            let body = self.bodies.at(*index);
+            if body.gravity_mode {
+                solver_body.force += g * body.mass.mass;
+            }
+        }
+    }
+
+    fn apply_gyroscopic_torques(&self, bodies: &[u32], island: &mut Island, h: f64) {
+        for (index, solver_body) in bodies.iter().zip(&mut island.bodies) {
+            let body = self.bodies.at(*index);
+            if body.gyroscopic_mode && !body.is_kinematic() && body.frame.angular_velocity != Vec3::ZERO {
+                let inertia = body.inertia_world();
+                solver_body.torque += gyroscopic::torque(&inertia, body.frame.angular_velocity, h);
+            }
+        }
+    }
+
+    /// Asks each joint for its rows; those without any drop out.
+    fn count_rows(&mut self, island: &mut Island, ctx: &StepContext) {
+        let joints = &mut self.joints;
+        let bodies = &island.bodies;
+        island.spans.retain_mut(|span| {
+            let joint = joints.at_mut(span.joint);
+            let ends = ends_of(joint, span, bodies);
+            span.count = joint.kind.model_mut().row_count(&ends, ctx);
+            span.count.rows > 0
+        });
+    }
+
+    /// Has each joint fill its rows. Forces that joints add meanwhile enter the right-hand side of this step.
+    fn write_rows(&mut self, island: &mut Island, ctx: &StepContext) {
+        island.rows.clear();
+        for span in &mut island.spans {
+            span.first = island.rows.len();
+            island.rows.resize(span.first + span.count.rows, Row::blank(ctx.cfm));
+            let mut out = JointRows { rows: &mut island.rows[span.first..], forces: [Wrench::default(); 2] };
+            let joint = self.joints.at_mut(span.joint);
+            let ends = ends_of(joint, span, &island.bodies);
+            joint.kind.model_mut().write_rows(&ends, ctx, &mut out);
+            let forces = out.forces;
+            for (place, wrench) in span.bodies.into_iter().zip(forces) {
+                if let Some(body) = island.bodies.get_mut(place as usize) {
+                    body.force += wrench.force;
+                    body.torque += wrench.torque;
+                }
+            }
+        }
+    }
+
+    /// Tells joints that ask for it what forces they put on their bodies.
+    fn write_feedback(&mut self, island: &Island) {
+        for span in &island.spans {
+            let joint = self.joints.at_mut(span.joint);
+            let two = joint.nodes[1].body != crate::arena::NIL;
+            let Some(feedback) = &mut joint.feedback else { continue };
+            let range = span.first..span.first + span.count.rows;
+            let mut wrenches = [Wrench::default(); 2];
+            for (row, lambda) in island.rows[range.clone()].iter().zip(&island.lambda[range]) {
+                wrenches[0].force += row.linear1 * *lambda;
+                wrenches[0].torque += row.angular1 * *lambda;
+                wrenches[1].force += row.linear2 * *lambda;
+                wrenches[1].torque += row.angular2 * *lambda;
+            }
+            (feedback.force1, feedback.torque1) = (wrenches[0].force, wrenches[0].torque);
+            if two {
+                (feedback.force2, feedback.torque2) = (wrenches[1].force, wrenches[1].torque);
+            }
+        }
+    }
+
+    /// Velocity, pose, moved callback, damping, cleared accumulators: body after body.
+    fn move_bodies(
+        &mut self,
+        bodies: &[u32],
+        island: &Island,
+        stepper: Stepper,
+        h: f64,
+        report: &mut StepReport,
+    ) {
+        if stepper == Stepper::Quick {
+            // All velocities of the island are final before the first callback.
+            for (index, solver_body) in bodies.iter().zip(&island.bodies) {
+                self.bodies.at_mut(*index).set_velocities(solver_body);
+            }
+        }
+        for (index, solver_body) in bodies.iter().zip(&island.bodies) {
+            let key = self.body_key(*index);
+            let body = self.bodies.at_mut(*index);
+            if stepper == Stepper::Direct {
+                let mut advanced = *solver_body;
+                direct::update_velocity(&mut advanced, h);
+                body.set_velocities(&advanced);
+            }
+            integrate::advance_pose(body, h);
+            if let Some(moved) = body.moved.clone() {
+                moved(key, body);
+            }
+            let damping = body.damping;
+            damping.apply(&mut body.frame.linear_velocity, &mut body.frame.angular_velocity);
+            body.force = Vec3::ZERO;
+            body.torque = Vec3::ZERO;
+            if !body.is_finite() {
+                body.quarantine(Some(&solver_body.frame));
+                report.quarantined.push(key);
+            }
+        }
+    }
+}
+
+/// The ends of a joint, from the island's array.
+fn ends_of<'a>(joint: &Joint, span: &JointSpan, bodies: &'a [SolverBody]) -> Ends<'a> {
+    let frame = |place: u32| bodies.get(place as usize).map(|body| &body.frame);
+    Ends { first: frame(span.bodies[0]), second: frame(span.bodies[1]), reverse: joint.reverse }
+}
+
+impl SolverBody {
+    fn new(body: &Body) -> Self {
+        let r = body.frame.rotation;
+        let immovable = body.quarantined || body.is_kinematic();
+        Self {
+            frame: body.frame,
+            inv_mass: if immovable { 0.0 } else { body.inv_mass },
+            inv_inertia: if immovable { Mat3::ZERO } else { r * body.inv_inertia * r.transpose() },
+            force: body.force,
+            torque: body.torque,
+        }
+    }
+}
+
+impl Body {
+    fn set_velocities(&mut self, from: &SolverBody) {
+        self.frame.linear_velocity = from.frame.linear_velocity;
+        self.frame.angular_velocity = from.frame.angular_velocity;
+    }
+
+    /// Takes the body out of the simulation, at rest in its last good pose.
+    fn quarantine(&mut self, last_good: Option<&Frame>) {
+        if let Some(frame) = last_good {
+            self.frame = *frame;
+        }
+        self.frame.linear_velocity = Vec3::ZERO;
+        self.frame.angular_velocity = Vec3::ZERO;
+        self.force = Vec3::ZERO;
+        self.torque = Vec3::ZERO;
+        self.quarantined = true;
+    }
+}
