@@ -26,3 +26,8 @@ pub(crate) fn hinge_angle(relative: Quat, axis: Vec3) -> f64 {
     let theta = if theta > core::f64::consts::PI { theta - 2.0 * core::f64::consts::PI } else { theta };
     -theta
 }
+
+/// The angle between two vectors in radians, 0 … π; 0 if one of them is zero.
+pub(crate) fn angle_between(a: Vec3, b: Vec3) -> f64 {
+    real::atan2(a.cross(b).length(), a.dot(b))
+}

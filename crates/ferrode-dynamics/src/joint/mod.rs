@@ -42,7 +42,7 @@ pub use plane2d::Plane2D;
 pub use pr::PR;
 pub use pu::PU;
 pub use slider::Slider;
-pub use transmission::Transmission;
+pub use transmission::{Transmission, TransmissionMode};
 pub use universal::Universal;
 
 use crate::arena::{NIL, RawKey, key_type};
