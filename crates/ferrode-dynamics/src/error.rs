@@ -1,6 +1,6 @@
 //! What can go wrong, by the caller's doing.
 
-use crate::{BodyKey, GroupKey, JointKey, JointType};
+use crate::{BodyKey, GroupKey, JointKey, JointType, MeshError};
 use core::fmt;
 use ferrode_math::Vec3;
 
@@ -86,6 +86,8 @@ pub enum Error {
         /// Where it is, in body coordinates.
         centre: Vec3,
     },
+    /// A triangle mesh bounds no solid.
+    Mesh(MeshError),
 }
 
 impl fmt::Display for Error {
@@ -123,6 +125,7 @@ impl fmt::Display for Error {
             Self::InertiaNotPositiveDefinite { about } => {
                 write!(f, "the inertia tensor about {about} is not positive definite")
             }
+            Self::Mesh(fault) => fault.fmt(f),
             Self::CentreOfMassOffOrigin { centre } => write!(
                 f,
                 "the centre of mass is at ({}, {}, {}) in the body's frame, but must be at its origin: call \

@@ -44,7 +44,7 @@ pub use damping::Damping;
 pub use error::Error;
 pub use group::GroupKey;
 pub use joint::*;
-pub use mass::Mass;
+pub use mass::{Axis, Mass, MeshError};
 pub use report::StepReport;
 pub use rows::{NO_FRICTION_INDEX, Row, RowKind};
 pub use sleep::AutoDisable;
