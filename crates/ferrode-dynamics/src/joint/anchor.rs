@@ -35,6 +35,11 @@ impl Anchors {
         if ends.reverse { [b, a] } else { [a, b] }
     }
 
+    /// How far the two points are apart.
+    pub fn distance(&self, ends: &Ends<'_>) -> f64 {
+        (self.world1(ends) - self.world2(ends)).length()
+    }
+
     /// Three rows that hold the two points together, along x, y and z, with slots 0 … 2: the ball joint's.
     ///
     /// `erp` is the error reduction of these rows.

@@ -1,7 +1,9 @@
 //! Axes that joints share: set in world coordinates, kept in body coordinates.
 
+use crate::Error;
 use crate::ends::Ends;
-use ferrode_math::{Quat, Vec3, real};
+use crate::rows::Row;
+use ferrode_math::{Quat, Vec3, plane_space, real};
 
 /// A world vector, already of unit length, in the coordinates of the first and second body. `raw` is the caller's own
 /// vector: with one body ODE keeps it as given for the world's side, unnormalised.
@@ -12,6 +14,32 @@ pub(crate) fn local_axes(ends: &Ends<'_>, unit: Vec3, raw: Vec3) -> [Vec3; 2] {
         None => raw,
     };
     [first, second]
+}
+
+/// A caller's axis, in world coordinates and of any length, in the coordinates of the first and second body.
+///
+/// # Errors
+/// [`Error::ZeroVector`] or [`Error::NotFinite`], naming the axis as `what`.
+pub(crate) fn set_axes(ends: &Ends<'_>, what: &'static str, axis: Vec3) -> Result<[Vec3; 2], Error> {
+    Ok(local_axes(ends, crate::error::unit(what, axis)?, axis))
+}
+
+/// The same with the world direction that the first body's axis has now: what ODE does when a joint is attached.
+pub(crate) fn reset_axes(ends: &Ends<'_>, first: Vec3) -> [Vec3; 2] {
+    let axis = ends.a().rotation * first;
+    local_axes(ends, axis.normalized_or(axis), axis)
+}
+
+/// Two rows, with slots `slot` and `slot + 1`, that turn the world axis `b` of the second body onto the unit axis `a` of
+/// the first; `k` is the factor from error to velocity.
+pub(crate) fn write_alignment_rows(a: Vec3, b: Vec3, k: f64, two_bodies: bool, rows: &mut [Row], slot: u8) {
+    let (p, q) = plane_space(a);
+    let error = a.cross(b);
+    for ((row, u), slot) in rows.iter_mut().zip([p, q]).zip(slot..) {
+        row.set_angular(u, two_bodies);
+        row.correct(k, error.dot(u));
+        row.slot = slot;
+    }
 }
 
 /// The angle of a relative rotation about a local unit axis, in [−π, π), by ODE's rule.
