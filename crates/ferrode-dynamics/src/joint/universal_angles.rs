@@ -3,10 +3,12 @@
 //! A frame that has the first body's axis as x and the second's in its xy plane stands for the cross between the two
 //! yokes. Each angle is the turn of a body relative to that frame, since the axes were set.
 
-use super::axis::hinge_angle;
-use crate::ends::Ends;
+use super::axis::{angle_between, hinge_angle};
+use crate::ends::{Ends, StepContext};
+use crate::rows::Row;
+use core::f64::consts::FRAC_PI_2;
 use ferrode_math::rotation::from_two_axes;
-use ferrode_math::{Quat, Vec3};
+use ferrode_math::{Quat, Vec3, plane_space};
 
 /// Rotation whose x column is along `a` and whose y column lies in the plane of `a` and `b`. `None` if one is zero or
 /// they are parallel.
@@ -100,11 +102,19 @@ impl UniversalAxes {
         -hinge_angle(relative, self.local[1])
     }
 
-    /// The unit vector orthogonal to both axes, about which the perpendicularity row acts, and the cosine of the angle
-    /// between the axes; `None` if they are parallel.
-    pub fn normal(&self, ends: &Ends<'_>) -> Option<(Vec3, f64)> {
+    /// Fills the row that keeps the axes perpendicular: about the normal of both, with the world's ERP and CFM. Parallel
+    /// axes have no such normal; the row then turns about any vector across axis 1 (ODE divides by zero).
+    pub fn write_perpendicular_row(&self, ends: &Ends<'_>, ctx: &StepContext, row: &mut Row, slot: u8) {
         let (a, b) = (self.world1(ends), self.world2(ends));
         let d = a.dot(b);
-        a.cross(b - a * d).normalized().map(|n| (n, d))
+        let n = a.cross(b - a * d).normalized().unwrap_or_else(|| plane_space(a).0);
+        row.set_angular(n, ends.two());
+        row.correct(ctx.k(), -d);
+        row.slot = slot;
+    }
+
+    /// How far the angle between the axes is from a right one, in radians.
+    pub fn error(&self, ends: &Ends<'_>) -> f64 {
+        (angle_between(self.world1(ends), self.world2(ends)) - FRAC_PI_2).abs()
     }
 }
