@@ -1,2 +1,51 @@
+#![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
-//! ferrode
+
+mod build;
+mod contacts;
+mod energy;
+mod error;
+mod events;
+mod fixed_step;
+mod geoms;
+mod joints;
+mod material;
+mod step;
+mod world;
+
+/// Shapes, contacts, spaces and ray casts, without bodies.
+pub use ferrode_collide as collide;
+/// Bodies, joints and steppers, without shapes.
+pub use ferrode_dynamics as dynamics;
+/// Vectors, rotations and poses.
+pub use ferrode_math as math;
+
+pub use build::{BodyBuilder, mass_of};
+pub use contacts::{ContactOwner, TouchingContact};
+pub use energy::Energy;
+pub use error::Error;
+pub use events::ContactEvent;
+pub use ferrode_collide::{
+    Capsule, CollideOptions, Colliders, Cuboid, Cylinder, Geom, GeomContact, GeomKey, Plane, Ray, Shape,
+    SpaceKey, SpaceKind, Sphere,
+};
+pub use ferrode_dynamics::{
+    AMotor, AutoDisable, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping, FiniteRotation, Fixed,
+    GroupKey, Hinge, Hinge2, JointError, JointFeedback, JointKey, JointType, LMotor, LimitMotor, Mass, Null,
+    PR, PU, Param, Piston, Plane2D, QuickSettings, Slider, Softness, StepReport, Stepper, Surface,
+    SurfaceMode, Transmission, Universal,
+};
+pub use ferrode_math::{Aabb, ContactPoint, Mat3, Pose, Quat, Vec3};
+pub use fixed_step::FixedStep;
+pub use geoms::GeomInfo;
+pub use material::{Combine, CombineRules, Material};
+pub use step::Step;
+pub use world::World;
+
+/// What most programs need: `use ferrode::prelude::*;`.
+pub mod prelude {
+    pub use crate::{
+        BodyBuilder, BodyKey, Capsule, Cuboid, Cylinder, Error, GeomKey, JointKey, Mass, Material, Plane,
+        Pose, Quat, Shape, Sphere, Stepper, Surface, Vec3, World,
+    };
+}

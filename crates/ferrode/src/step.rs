@@ -1,0 +1,52 @@
+//! One step of a world with shapes.
+
+use crate::{Error, World};
+use ferrode_dynamics::StepReport;
+
+/// What happened in a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Step {
+    /// Pairs of geoms whose boxes overlapped.
+    pub pairs: usize,
+    /// Contact points.
+    pub contacts: usize,
+    /// Deepest penetration found at the start of the step, in metres.
+    pub max_depth: f64,
+    /// The stepping of bodies and joints.
+    pub dynamics: StepReport,
+}
+
+impl World {
+    /// Advances the world by `h` seconds: broad phase → narrow phase → contact joints → step → events.
+    ///
+    /// Keep `h` constant; see [`FixedStep`](crate::FixedStep).
+    ///
+    /// # Errors
+    /// [`Error::Dynamics`] for a step that is not positive and finite; nothing is stepped then.
+    pub fn step(&mut self, h: f64) -> Result<Step, Error> {
+        self.dynamics.impulse_to_force(h, ferrode_math::Vec3::ZERO)?;
+        let mut scratch = core::mem::take(&mut self.scratch);
+        let result = self.step_with(h, &mut scratch);
+        self.scratch = scratch;
+        result
+    }
+
+    fn step_with(&mut self, h: f64, scratch: &mut crate::world::Scratch) -> Result<Step, Error> {
+        self.sync_geoms();
+        self.find_pairs(scratch)?;
+        self.make_contacts(scratch)?;
+        let dynamics = self.dynamics.step(self.stepper, h)?;
+        self.finish_contacts()?;
+        self.find_events(&mut scratch.touching);
+        self.sync_geoms();
+        self.time += h;
+        self.steps += 1;
+        Ok(Step {
+            pairs: scratch.pairs.len(),
+            contacts: self.contacts.len(),
+            max_depth: self.contacts.iter().map(|c| c.point.depth).fold(0.0, f64::max),
+            dynamics,
+        })
+    }
+}
