@@ -18,7 +18,7 @@
 //! **Order.** At first all rows without a friction index in their order, then all with one. At the start of the iterations 8, 16, 24, …
 //! the whole order is shuffled in place: for k = 1 … m-1, r = random(k + 1), entries k and r change places.
 //!
-//! **Layout.** `J_i` is scaled by `d_i` beforehand and stored with `B_i`, the bounds and the bodies' numbers in one record of four cache lines,
+//! **Layout.** `J_i` is scaled by `-d_i` beforehand and stored with `B_i`, the bounds and the bodies' numbers in one record of four cache lines,
 //! in the order of access; a row that acts on one body reads three of them. The two bounds are multiplied by `|lambda_f|` without asking:
 //! rows without a friction index point to a force that is always 1. Sums have a fixed order of two partial sums.
 
@@ -170,7 +170,7 @@ struct PackedRow {
     scale: u32,
     /// The row in the caller's order.
     row: u32,
-    /// `d J` and `B` of the first body.
+    /// `-d J` and `B` of the first body.
     j0: [f64; 6],
     b0: [f64; 6],
     /// Of the second body.
@@ -184,6 +184,8 @@ struct PackedRow {
 pub struct SorWorkspace {
     packed: Vec<PackedRow>,
     order: Vec<u32>,
+    /// Scratch: the rows with a friction index.
+    friction: Vec<u32>,
     /// The forces, and the one that is always 1.
     lambda: Vec<f64>,
     /// The accelerations, and one of a body that stands for no body.
@@ -220,7 +222,7 @@ impl SorWorkspace {
 ///
 /// # Errors
 /// If a row names a body or a friction row that does not exist, one body twice, or has bounds that are not numbers
-/// or the wrong way round; if a parameter is not a usable number. The answer of the last solve is then untouched.
+/// or the wrong way round; if a parameter is not a usable number. The workspace then holds no answer.
 pub fn solve_sor(
     bodies: &[SorBody],
     rows: &[SorRow],
@@ -228,8 +230,12 @@ pub fn solve_sor(
     random: &mut impl FnMut(u32) -> u32,
     workspace: &mut SorWorkspace,
 ) -> Result<SorReport, LcpError> {
-    check(bodies, rows, params)?;
-    workspace.load(bodies, rows, params);
+    check_params(params)?;
+    if let Err(error) = workspace.load(bodies, rows, params) {
+        workspace.lambda.clear();
+        workspace.acceleration.clear();
+        return Err(error);
+    }
     let (iterations, exit) = match (params.dynamic, params.inf_times_zero) {
         (None, InfTimesZero::Unbounded) => workspace.run::<false, false>(params, random),
         (None, InfTimesZero::Zero) => workspace.run::<true, false>(params, random),
@@ -242,7 +248,7 @@ pub fn solve_sor(
     Ok(SorReport { iterations, exit, finite: !(forces + accelerations).is_nan() })
 }
 
-fn check(bodies: &[SorBody], rows: &[SorRow], params: &SorParams) -> Result<(), LcpError> {
+fn check_params(params: &SorParams) -> Result<(), LcpError> {
     let usable = |what, value: f64| {
         if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(LcpError::Parameter { what, value }) }
     };
@@ -251,20 +257,26 @@ fn check(bodies: &[SorBody], rows: &[SorRow], params: &SorParams) -> Result<(), 
         usable("premature_exit_delta", dynamic.premature_exit_delta)?;
         usable("extra_requirement_delta", dynamic.extra_requirement_delta)?;
     }
-    for (row, r) in rows.iter().enumerate() {
-        match usize::try_from(r.findex) {
-            Ok(f) if f >= rows.len() => return Err(LcpError::FrictionIndex { row, findex: r.findex }),
-            Ok(_) if r.hi.is_nan() => return Err(LcpError::Bounds { row, lo: r.lo, hi: r.hi }),
-            Err(_) if r.lo.is_nan() || r.hi.is_nan() || r.lo > r.hi => {
-                return Err(LcpError::Bounds { row, lo: r.lo, hi: r.hi });
-            }
-            _ => {}
+    Ok(())
+}
+
+/// Checks one of `rows` rows on `bodies` bodies.
+#[inline(always)]
+fn check_row(row: usize, r: &SorRow, rows: usize, bodies: usize) -> Result<(), LcpError> {
+    if r.findex >= 0 {
+        if r.findex as usize >= rows {
+            return Err(LcpError::FrictionIndex { row, findex: r.findex });
         }
-        let known = |b: u32| b == NO_BODY || (b as usize) < bodies.len();
-        let twice = r.body[0] == r.body[1] && r.body[0] != NO_BODY;
-        if !known(r.body[0]) || !known(r.body[1]) || twice {
-            return Err(LcpError::Body { row, body: r.body });
+        if r.hi.is_nan() {
+            return Err(LcpError::Bounds { row, lo: r.lo, hi: r.hi });
         }
+    } else if r.lo.is_nan() || r.hi.is_nan() || r.lo > r.hi {
+        return Err(LcpError::Bounds { row, lo: r.lo, hi: r.hi });
+    }
+    let known = |b: u32| b == NO_BODY || (b as usize) < bodies;
+    let twice = r.body[0] == r.body[1] && r.body[0] != NO_BODY;
+    if !known(r.body[0]) || !known(r.body[1]) || twice {
+        return Err(LcpError::Body { row, body: r.body });
     }
     Ok(())
 }
@@ -293,6 +305,28 @@ fn dot6(j: &[f64; 6], a: &[f64; 8]) -> [f64; 2] {
     s
 }
 
+/// `x` within `[lo, hi]`; a bound that is not a number is none.
+#[inline(always)]
+fn clamp(x: f64, lo: f64, hi: f64) -> f64 {
+    let raised = if x < lo { lo } else { x };
+    if raised > hi { hi } else { raised }
+}
+
+/// `a += delta b`. The sums are made in one value, so that they are stored in whole registers: what is stored in halves
+/// is slow to load as a whole.
+#[inline(always)]
+fn add_scaled(a: &mut [f64; 8], delta: f64, b: &[f64; 6]) {
+    let sum = [
+        a[0] + delta * b[0],
+        a[1] + delta * b[1],
+        a[2] + delta * b[2],
+        a[3] + delta * b[3],
+        a[4] + delta * b[4],
+        a[5] + delta * b[5],
+    ];
+    a[..6].copy_from_slice(&sum);
+}
+
 /// The largest component by size.
 fn largest(b: &[f64; 6]) -> f64 {
     b.iter().fold(0.0, |m: f64, v| if v.abs() > m { v.abs() } else { m })
@@ -300,7 +334,7 @@ fn largest(b: &[f64; 6]) -> f64 {
 
 impl SorWorkspace {
     /// Packs the rows and sets forces and accelerations to zero.
-    fn load(&mut self, bodies: &[SorBody], rows: &[SorRow], params: &SorParams) {
+    fn load(&mut self, bodies: &[SorBody], rows: &[SorRow], params: &SorParams) -> Result<(), LcpError> {
         let (m, nobody) = (rows.len(), bodies.len() as u32);
         self.lambda.clear();
         self.lambda.resize(m, 0.0);
@@ -309,6 +343,8 @@ impl SorWorkspace {
         self.acceleration.resize(bodies.len() + 1, SorAcceleration::default());
         self.packed.clear();
         self.packed.reserve(m);
+        self.order.clear();
+        self.friction.clear();
         self.weight.clear();
         self.change.clear();
         if params.dynamic.is_some() {
@@ -317,6 +353,7 @@ impl SorWorkspace {
         }
         let zero = [0.0; 6];
         for (row, r) in rows.iter().enumerate() {
+            check_row(row, r, m, bodies.len())?;
             let part = |b: u32, j: &[f64]| match bodies.get(b as usize) {
                 Some(body) => (b, [j[0], j[1], j[2], j[3], j[4], j[5]], apply_inverse_mass(body, j)),
                 None => (NO_BODY, zero, zero),
@@ -341,12 +378,15 @@ impl SorWorkspace {
             let d =
                 if diagonal == 0.0 || diagonal.is_nan() { 0.0 } else { params.over_relaxation / diagonal };
             for l in 0..6 {
-                j0[l] *= d;
-                j1[l] *= d;
+                j0[l] *= -d;
+                j1[l] *= -d;
             }
-            let (lo, hi, scale) = match u32::try_from(r.findex) {
-                Ok(f) => (-r.hi.abs(), r.hi.abs(), f),
-                Err(_) => (r.lo, r.hi, m as u32),
+            let (lo, hi, scale) = if r.findex >= 0 {
+                self.friction.push(row as u32);
+                (-r.hi.abs(), r.hi.abs(), r.findex as u32)
+            } else {
+                self.order.push(row as u32);
+                (r.lo, r.hi, m as u32)
             };
             self.packed.push(PackedRow {
                 rhs: r.rhs * d,
@@ -365,9 +405,8 @@ impl SorWorkspace {
                 self.weight.push([largest(&b0), largest(&b1)]);
             }
         }
-        self.order.clear();
-        self.order.extend((0..m as u32).filter(|&i| rows[i as usize].findex < 0));
-        self.order.extend((0..m as u32).filter(|&i| rows[i as usize].findex >= 0));
+        self.order.extend_from_slice(&self.friction);
+        Ok(())
     }
 
     /// Does the iterations. `ZERO`: infinity times zero is zero; `DYNAMIC`: watch the changes.
@@ -429,31 +468,20 @@ impl SorWorkspace {
             if ZERO && size == 0.0 {
                 (lo, hi) = (0.0, 0.0);
             }
-            // What the row's force would be with all bodies at rest; off the chain of dependent operations.
-            let base = (r.rhs - r.cfm * old) + old;
+            // From a body's acceleration to its next one is a chain of dependent operations, and rows in a row often share
+            // a body: all that can be is kept off that chain. So the change is clamped, not the force.
             let two = r.body[1] != NO_BODY;
             let mut s = dot6(&r.j0, &acceleration[first].0);
             if two {
                 let t = dot6(&r.j1, &acceleration[second].0);
                 s = [s[0] + t[0], s[1] + t[1]];
             }
-            let free = base - (s[0] + s[1]);
-            let raised = if free < lo { lo } else { free };
-            let new = if raised > hi { hi } else { raised };
-            let delta = new - old;
-            if delta == 0.0 {
-                continue;
-            }
-            lambda[row] = new;
-            let a = &mut acceleration[first].0;
-            for (a, b) in a.iter_mut().zip(&r.b0) {
-                *a += delta * b;
-            }
+            let wanted = (s[0] + (r.rhs - r.cfm * old)) + s[1];
+            let delta = clamp(wanted, lo - old, hi - old);
+            lambda[row] = clamp(old + wanted, lo, hi);
+            add_scaled(&mut acceleration[first].0, delta, &r.b0);
             if two {
-                let a = &mut acceleration[second].0;
-                for (a, b) in a.iter_mut().zip(&r.b1) {
-                    *a += delta * b;
-                }
+                add_scaled(&mut acceleration[second].0, delta, &r.b1);
             }
             if DYNAMIC {
                 let side = usize::from(delta < 0.0);
