@@ -7,7 +7,7 @@ use super::{JointError, JointModel, JointMut, JointRef};
 use crate::Error;
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, finite_number};
-use crate::rows::{JointRows, RowCount, Wrench};
+use crate::rows::{JointRows, RowCount};
 use ferrode_math::{Quat, Vec3};
 
 /// The hinge's data: anchor, axis, the relative rotation that counts as angle 0, and the stops and motor.
@@ -184,10 +184,7 @@ impl JointMut<'_, Hinge> {
         finite_number("hinge torque", torque)?;
         let (hinge, ends) = self.parts();
         let torque = hinge.axis(&ends) * (ends.sign() * torque);
-        self.add_wrenches([
-            Wrench { force: Vec3::ZERO, torque },
-            Wrench { force: Vec3::ZERO, torque: -torque },
-        ]);
+        self.add_opposite_torques(torque);
         Ok(())
     }
 }

@@ -372,6 +372,12 @@ impl<J: JointData> JointMut<'_, J> {
         }
     }
 
+    /// Adds a torque to the first body and the opposite one to the second.
+    pub(crate) fn add_opposite_torques(&mut self, torque: Vec3) {
+        let wrench = |torque| Wrench { force: Vec3::ZERO, torque };
+        self.add_wrenches([wrench(torque), wrench(-torque)]);
+    }
+
     /// Attaches the joint to its bodies; `None` stands for the static world, two `None` for limbo.
     ///
     /// # Errors

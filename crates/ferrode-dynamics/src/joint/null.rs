@@ -1,10 +1,10 @@
-//! The null joint.
+//! The null joint: connects bodies, so that they share an island, and constrains nothing.
 
 use super::JointModel;
 use crate::ends::{Ends, StepContext};
 use crate::rows::{JointRows, RowCount};
 
-/// The null joint's data.
+/// The null joint's data: none.
 #[derive(Clone, Debug)]
 pub struct Null {}
 
