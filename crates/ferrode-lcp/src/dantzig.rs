@@ -11,7 +11,7 @@
 //! so that their slacks stay 0: `dx_C = -s A_CC^-1 A_Ci`; the slacks of N change by `dw_N = A_NC dx_C + s A_Ni`. The step
 //! ends at the first thing that happens: `w_i` reaches 0 (i joins C), `x_i` reaches a bound (i joins N), the slack of a row in N
 //! reaches 0 (it moves to C), or the unknown of a row in C reaches a bound (it moves to N). In the last two cases the
-//! drive goes on. `A_CC = L D L^T` is kept up to date in `O(n^2)` per change ([`crate::envelope`]).
+//! drive goes on. `A_CC = L D L^T` is kept up to date in `O(n^2)` per change (`envelope.rs`).
 //!
 //! Rows without any bound go first: they are factored and solved at one go and never leave C. Rows with a friction index
 //! go last. When the first of those is reached, the bounds of all of them are frozen at `|hi_i x_f|` for the current `x`; `inf * 0`
@@ -19,10 +19,10 @@
 //!
 //! Redundant problems have many solutions as far as rounding can tell, and which one comes out depends on the order of
 //! rows and the breaking of ties. Both are therefore fixed: sets are stretches of one permutation, changed by swaps,
-//! and of equal step lengths the first found, in the order of the list in [`Drive::step_length`], is taken.
+//! and of equal step lengths the first found is taken: the row's own slack, its own bound, the slacks of N, the unknowns of C.
 //!
 //! Nothing is ever moved in memory but indices: vectors stay in the caller's order, the matrix is a compressed copy
-//! ([`crate::block_rows`]).
+//! (`block_rows.rs`).
 
 use crate::block_rows::BlockRows;
 use crate::envelope::EnvelopeFactor;

@@ -17,13 +17,12 @@
 //!
 //! **Order.** At first all rows without a friction index in their order, then all with one. At the start of the iterations 8, 16, 24, …
 //! the whole order is shuffled in place: for k = 1 … m-1, r = random(k + 1), entries k and r change places.
-//!
-//! **Layout.** `J_i` is scaled by `-d_i` beforehand and stored with `B_i`, the bounds and the bodies' numbers in one record of four cache lines,
-//! in the order of access; a row that acts on one body reads three of them. The two bounds are multiplied by `|lambda_f|` without asking:
-//! rows without a friction index point to a force that is always 1. Sums have a fixed order of two partial sums.
+
+mod sweep;
 
 use crate::error::LcpError;
 use crate::kernel::sum4;
+use sweep::{PackedRow, Stretch, Sweep, find_stretches};
 
 /// Stands for "no body".
 pub const NO_BODY: u32 = u32::MAX;
@@ -157,33 +156,14 @@ pub struct SorReport {
     pub finite: bool,
 }
 
-/// A row as the loop reads it.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-struct PackedRow {
-    rhs: f64,
-    cfm: f64,
-    lo: f64,
-    hi: f64,
-    body: [u32; 2],
-    /// The force that scales the bounds; for rows without a friction index the one that is always 1.
-    scale: u32,
-    /// The row in the caller's order.
-    row: u32,
-    /// `-d J` and `B` of the first body.
-    j0: [f64; 6],
-    b0: [f64; 6],
-    /// Of the second body.
-    j1: [f64; 6],
-    b1: [f64; 6],
-}
-
 /// All memory that a solve needs, and its answer. Made once, it grows to the largest problem met; a solve that fits
 /// allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct SorWorkspace {
     packed: Vec<PackedRow>,
     order: Vec<u32>,
+    /// The order before the first shuffle, as stretches of rows on the same bodies.
+    stretches: Vec<Stretch>,
     /// Scratch: the rows with a friction index.
     friction: Vec<u32>,
     /// The forces, and the one that is always 1.
@@ -295,38 +275,6 @@ fn apply_inverse_mass(body: &SorBody, j: &[f64]) -> [f64; 6] {
     ]
 }
 
-/// Two partial dot products of six numbers, even and odd places.
-#[inline(always)]
-fn dot6(j: &[f64; 6], a: &[f64; 8]) -> [f64; 2] {
-    let mut s = [0.0; 2];
-    for l in 0..2 {
-        s[l] = (j[l] * a[l] + j[l + 2] * a[l + 2]) + j[l + 4] * a[l + 4];
-    }
-    s
-}
-
-/// `x` within `[lo, hi]`; a bound that is not a number is none.
-#[inline(always)]
-fn clamp(x: f64, lo: f64, hi: f64) -> f64 {
-    let raised = if x < lo { lo } else { x };
-    if raised > hi { hi } else { raised }
-}
-
-/// `a += delta b`. The sums are made in one value, so that they are stored in whole registers: what is stored in halves
-/// is slow to load as a whole.
-#[inline(always)]
-fn add_scaled(a: &mut [f64; 8], delta: f64, b: &[f64; 6]) {
-    let sum = [
-        a[0] + delta * b[0],
-        a[1] + delta * b[1],
-        a[2] + delta * b[2],
-        a[3] + delta * b[3],
-        a[4] + delta * b[4],
-        a[5] + delta * b[5],
-    ];
-    a[..6].copy_from_slice(&sum);
-}
-
 /// The largest component by size.
 fn largest(b: &[f64; 6]) -> f64 {
     b.iter().fold(0.0, |m: f64, v| if v.abs() > m { v.abs() } else { m })
@@ -395,7 +343,6 @@ impl SorWorkspace {
                 hi,
                 body: [first.0, second.0],
                 scale,
-                row: row as u32,
                 j0,
                 b0,
                 j1,
@@ -406,6 +353,7 @@ impl SorWorkspace {
             }
         }
         self.order.extend_from_slice(&self.friction);
+        find_stretches(&self.order, &self.packed, &mut self.stretches);
         Ok(())
     }
 
@@ -426,7 +374,7 @@ impl SorWorkspace {
             if done >= SHUFFLE_PERIOD && done % SHUFFLE_PERIOD == 0 {
                 self.shuffle(random);
             }
-            self.sweep::<ZERO, DYNAMIC>();
+            self.sweep::<ZERO, DYNAMIC>(done >= SHUFFLE_PERIOD);
             done += 1;
             let added = params.dynamic.map_or(0, |d| d.extra_iterations);
             if done == planned.saturating_add(extra) {
@@ -455,41 +403,17 @@ impl SorWorkspace {
         }
     }
 
-    /// Visits every row once.
-    fn sweep<const ZERO: bool, const DYNAMIC: bool>(&mut self) {
-        let Self { packed, order, lambda, acceleration, weight, change, .. } = self;
-        for &at in order.iter() {
-            let r = &packed[at as usize];
-            let row = r.row as usize;
-            let (first, second) = (r.body[0] as usize, r.body[1] as usize);
-            let old = lambda[row];
-            let size = lambda[r.scale as usize].abs();
-            let (mut lo, mut hi) = (r.lo * size, r.hi * size);
-            if ZERO && size == 0.0 {
-                (lo, hi) = (0.0, 0.0);
+    /// Visits every row once: in stretches of rows on the same bodies until the first shuffle, one by one after.
+    fn sweep<const ZERO: bool, const DYNAMIC: bool>(&mut self, shuffled: bool) {
+        let Self { packed, order, stretches, lambda, acceleration, weight, change, .. } = self;
+        let mut sweep = Sweep::<ZERO, DYNAMIC> { packed, lambda, acceleration, weight, change };
+        if shuffled {
+            for &row in order.iter() {
+                sweep.visit(row as usize);
             }
-            // From a body's acceleration to its next one is a chain of dependent operations, and rows in a row often share
-            // a body: all that can be is kept off that chain. So the change is clamped, not the force.
-            let two = r.body[1] != NO_BODY;
-            let mut s = dot6(&r.j0, &acceleration[first].0);
-            if two {
-                let t = dot6(&r.j1, &acceleration[second].0);
-                s = [s[0] + t[0], s[1] + t[1]];
-            }
-            let wanted = (s[0] + (r.rhs - r.cfm * old)) + s[1];
-            let delta = clamp(wanted, lo - old, hi - old);
-            lambda[row] = clamp(old + wanted, lo, hi);
-            add_scaled(&mut acceleration[first].0, delta, &r.b0);
-            if two {
-                add_scaled(&mut acceleration[second].0, delta, &r.b1);
-            }
-            if DYNAMIC {
-                let side = usize::from(delta < 0.0);
-                let weight = weight[row];
-                change[first][side] += delta * weight[0];
-                if two {
-                    change[second][side] += delta * weight[1];
-                }
+        } else {
+            for stretch in stretches.iter() {
+                sweep.visit_stretch(order, stretch);
             }
         }
     }
