@@ -15,6 +15,8 @@ pub fn capsule_cuboid(capsule: &Capsule, fc: &Frame, cuboid: &Cuboid, fb: &Frame
     if (on_axis - on_box).length() >= INSIDE {
         spheres(on_axis, r, on_box, 0.0, out);
     } else if let Ok(around) = Cuboid::from_half_sides(Vec3::new(r, r, 0.5 * capsule.length() + r)) {
-        cuboid_cuboid(&around, fc, cuboid, fb, out);
+        // libode asks with the box first, which decides between equal axes.
+        cuboid_cuboid(cuboid, fb, &around, fc, out);
+        out.swap();
     }
 }

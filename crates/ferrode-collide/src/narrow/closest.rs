@@ -86,12 +86,29 @@ pub fn closest_segment_points(a1: Vec3, a2: Vec3, b1: Vec3, b2: Vec3) -> (Vec3, 
     }
     let ab = a.dot(b);
     let det = la * lb - ab * ab;
-    if det <= 0.0 {
-        return (a1, b1);
+    let (s, t) = ((lb * da11 - ab * db11) / det, (ab * da11 - la * db11) / det);
+    if det > 1e-14 * la * lb && (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
+        return (a1 + a * s, b1 + b * t);
     }
-    let s = (lb * da11 - ab * db11) / det;
-    let t = (ab * da11 - la * db11) / det;
-    (a1 + a * s, b1 + b * t)
+    // Parallel up to rounding, which may fail every test above: the best of the corners and their feet. (ODE answers
+    // a1, b1, which need not be near.)
+    let foot = |corner: Vec3, start: Vec3, along: Vec3, square: f64| {
+        let t = if square > 0.0 { (along.dot(corner - start) / square).clamp(0.0, 1.0) } else { 0.0 };
+        start + along * t
+    };
+    let pairs = [
+        (a1, foot(a1, b1, b, lb)),
+        (a2, foot(a2, b1, b, lb)),
+        (foot(b1, a1, a, la), b1),
+        (foot(b2, a1, a, la), b2),
+    ];
+    let mut best = pairs[0];
+    for pair in &pairs[1..] {
+        if (pair.0 - pair.1).length_squared() < (best.0 - best.1).length_squared() {
+            best = *pair;
+        }
+    }
+    best
 }
 
 /// Nearest points of the segment p1 p2 and a box: first on the segment, then in or on the box.

@@ -61,7 +61,7 @@ impl<'a> Pair<'a> {
     fn face1(&self, i: usize) -> (f64, f64) {
         let q = &self.q[i];
         let h = self.half2;
-        (self.between1[i], self.half1[i] + (h.x * q[0] + h.y * q[1] + h.z * q[2]))
+        (self.between1[i], self.half1[i] + h.x * q[0] + h.y * q[1] + h.z * q[2])
     }
 
     /// The same along face axis `j` of the second box.
@@ -312,6 +312,9 @@ fn spread_points(points: &[[f64; 2]], m: usize, first: usize, chosen: &mut [usiz
 /// A face against anything gives the corners of the incident face clipped to the reference face, each with its own
 /// depth; an edge against an edge the point midway. If fewer are wanted, the deepest and others spread round the
 /// polygon. Returns the axis; `None` if the boxes are apart.
+///
+/// If contacts are unimportant, the first box's x axis is taken for the normal when it gives any, as in libode, which
+/// then tests no other axis and so reports boxes that are apart; here all axes are tested.
 pub fn cuboid_cuboid(
     a: &Cuboid,
     fa: &Frame,
@@ -321,12 +324,25 @@ pub fn cuboid_cuboid(
 ) -> Option<BoxBox> {
     let pair = Pair::new(a, fa, b, fb);
     let hit = pair.least_overlap()?;
+    let mut points = [(Vec3::ZERO, 0.0); 8];
+    let max = out.capacity().max(1);
+    if out.options().unimportant {
+        let (distance, reach) = pair.face1(0);
+        let normal = if distance < 0.0 { -fa.axis(0) } else { fa.axis(0) };
+        let first = BoxBox { normal, depth: reach - distance.abs(), code: 1 };
+        let n = pair.face_contacts(&first, max, &mut points);
+        if n > 0 {
+            for &(p, depth) in &points[..n] {
+                out.push(p, -normal, depth);
+            }
+            return Some(first);
+        }
+    }
     if hit.code >= 7 {
         out.push(pair.edge_contact(&hit), -hit.normal, hit.depth);
         return Some(hit);
     }
-    let mut points = [(Vec3::ZERO, 0.0); 8];
-    let n = pair.face_contacts(&hit, out.capacity().max(1), &mut points);
+    let n = pair.face_contacts(&hit, max, &mut points);
     for &(p, depth) in &points[..n] {
         out.push(p, -hit.normal, depth);
     }

@@ -42,18 +42,18 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Sphere, Sphere, sphere_sphere),
         pair!(Sphere, Cuboid, sphere_cuboid),
         swap!(Sphere, Capsule, capsule_sphere),
-        NONE,
+        swap!(Sphere, Cylinder, cylinder_sphere),
         pair!(Sphere, Plane, sphere_plane),
-        NONE,
+        swap!(Sphere, Ray, ray_sphere),
     ],
     // Cuboid
     [
         swap!(Cuboid, Sphere, sphere_cuboid),
         pair!(Cuboid, Cuboid, cuboid_cuboid),
         swap!(Cuboid, Capsule, capsule_cuboid),
-        NONE,
+        swap!(Cuboid, Cylinder, cylinder_cuboid),
         pair!(Cuboid, Plane, cuboid_plane),
-        NONE,
+        swap!(Cuboid, Ray, ray_cuboid),
     ],
     // Capsule
     [
@@ -62,28 +62,35 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Capsule, Capsule, capsule_capsule),
         NONE,
         pair!(Capsule, Plane, capsule_plane),
-        NONE,
+        swap!(Capsule, Ray, ray_capsule),
     ],
     // Cylinder
     [
+        pair!(Cylinder, Sphere, cylinder_sphere),
+        pair!(Cylinder, Cuboid, cylinder_cuboid),
         NONE,
         NONE,
-        NONE,
-        NONE,
-        NONE,
-        NONE,
+        pair!(Cylinder, Plane, cylinder_plane),
+        swap!(Cylinder, Ray, ray_cylinder),
     ],
     // Plane
     [
         swap!(Plane, Sphere, sphere_plane),
         swap!(Plane, Cuboid, cuboid_plane),
         swap!(Plane, Capsule, capsule_plane),
+        swap!(Plane, Cylinder, cylinder_plane),
         NONE,
-        NONE,
-        NONE,
+        swap!(Plane, Ray, ray_plane),
     ],
     // Ray
-    [NONE, NONE, NONE, NONE, NONE, NONE],
+    [
+        pair!(Ray, Sphere, ray_sphere),
+        pair!(Ray, Cuboid, ray_cuboid),
+        pair!(Ray, Capsule, ray_capsule),
+        pair!(Ray, Cylinder, ray_cylinder),
+        pair!(Ray, Plane, ray_plane),
+        NONE,
+    ],
 ];
 
 fn index(kind: ShapeKind) -> usize {
