@@ -28,6 +28,10 @@ pub(crate) fn merge_fixed(scene: &mut Scene, joints: &[JointId], notes: &mut Not
     let keepers: Vec<usize> = (0..keeper.len()).map(|link| keeper_of(&keeper, link)).collect();
     move_contents(scene, &keepers, notes);
     for (joint, _) in scene.joints.iter().zip(&drop_joint).filter(|(_, dropped)| **dropped) {
+        // In a URDF a joint's frame is its child's, and the two may share the name.
+        if scene.frames.iter().any(|frame| frame.name == joint.name) {
+            continue;
+        }
         let attached_to = joint.parent.link().map_or(Body::World, |link| Body::Link(LinkId(keepers[link.0])));
         scene.frames.push(Frame { name: joint.name.clone(), attached_to, pose: joint.pose });
     }
