@@ -19,6 +19,13 @@ impl Anchors {
         Self { first: ends.a().to_local_point(p), second: ends.b().to_local_point(p) }
     }
 
+    /// As [`Anchors::at`] with the first body displaced by `offset`, which it is not.
+    pub fn at_displaced(ends: &Ends<'_>, p: Vec3, offset: Vec3) -> Self {
+        let mut displaced = *ends.a();
+        displaced.position += offset;
+        Self { first: displaced.to_local_point(p), second: ends.b().to_local_point(p) }
+    }
+
     /// The first body's point in the world.
     pub fn world1(&self, ends: &Ends<'_>) -> Vec3 {
         ends.a().to_world_point(self.first)
@@ -48,7 +55,13 @@ impl Anchors {
     }
 
     /// As [`Anchors::write_rows`], along the given unit directions, each with its own factor from error to velocity.
-    pub fn write_rows_along(&self, directions: [Vec3; 3], k: [f64; 3], ends: &Ends<'_>, rows: &mut [Row]) {
+    pub fn write_rows_along<const N: usize>(
+        &self,
+        directions: [Vec3; N],
+        k: [f64; N],
+        ends: &Ends<'_>,
+        rows: &mut [Row],
+    ) {
         let r1 = ends.a().rotation * self.first;
         let r2 = ends.b().rotation * self.second;
         let error = (ends.b().position + r2) - (ends.a().position + r1);

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::ends::Ends;
 use crate::rows::Row;
-use ferrode_math::{Quat, Vec3, plane_space, real};
+use ferrode_math::{Mat3, Quat, Vec3, plane_space, real};
 
 /// A world vector, already of unit length, in the coordinates of the first and second body. `raw` is the caller's own
 /// vector: with one body ODE keeps it as given for the world's side, unnormalised.
@@ -58,4 +58,36 @@ pub(crate) fn hinge_angle(relative: Quat, axis: Vec3) -> f64 {
 /// The angle between two vectors in radians, 0 … π; 0 if one of them is zero.
 pub(crate) fn angle_between(a: Vec3, b: Vec3) -> f64 {
     real::atan2(a.cross(b).length(), a.dot(b))
+}
+
+/// What an axis of a motor is fixed to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AxisFrame {
+    /// The world.
+    #[default]
+    World,
+    /// The joint's first body.
+    First,
+    /// The joint's second body; the world if there is none.
+    Second,
+}
+
+impl AxisFrame {
+    /// The frame's rotation to the world.
+    pub(crate) fn rotation(self, ends: &Ends<'_>) -> Mat3 {
+        match self {
+            Self::World => Mat3::IDENTITY,
+            Self::First => ends.a().rotation,
+            Self::Second => ends.b().rotation,
+        }
+    }
+
+    /// The frame with first and second body exchanged.
+    pub(crate) fn exchanged(self) -> Self {
+        match self {
+            Self::World => Self::World,
+            Self::First => Self::Second,
+            Self::Second => Self::First,
+        }
+    }
 }

@@ -1,13 +1,14 @@
 //! Double hinge: two parallel hinge axes, one on each body, at a constant distance, like a bicycle chain's link.
 
+use super::axis::write_alignment_rows;
 use super::dball::{Rod, distance};
+use super::limit_motor::midpoint_torque;
 use super::{JointError, JointModel, JointMut, JointRef};
 use crate::Error;
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, unit};
 use crate::rows::{JointRows, RowCount};
 use ferrode_math::Vec3;
-use ferrode_math::rotation::plane_space;
 
 /// The double hinge's data: two anchors and their distance, one axis in both bodies, and its own ERP and CFM.
 #[derive(Clone, Debug)]
@@ -36,20 +37,13 @@ impl JointModel for DHinge {
             self.rod.write_row(ends, ctx, self.erp, self.cfm, row);
         }
         // The other rows have the joint's own ERP, but the world's CFM.
-        let ([_, align_p, align_q, axial], Some(axes)) = (&mut *out.rows, self.axes) else { return };
+        let ([_, align @ .., axial], Some(axes)) = (&mut *out.rows, self.axes) else { return };
         let k = ctx.fps * self.erp;
         let a = ends.a().rotation * axes[0];
-        let tilt = a.cross(ends.b().rotation * axes[1]);
-        let (p, q) = plane_space(a);
-        for (slot, row, u) in [(1, align_p, p), (2, align_q, q)] {
-            row.set_angular(u, ends.two());
-            row.correct(k, u.dot(tilt));
-            row.slot = slot;
-        }
+        write_alignment_rows(a, ends.b().rotation * axes[1], k, ends.two(), align, 1);
         axial.linear1 = a;
         if ends.two() {
-            // On the line through the midpoint of the two centres, so that no net couple arises.
-            let arm = (ends.b().position - ends.a().position).cross(a) * 0.5;
+            let arm = midpoint_torque(ends, a);
             axial.set_jacobian(a, arm, -a, arm);
         }
         axial.correct(k, -a.dot(self.rod.span(ends)));

@@ -27,7 +27,8 @@ mod transmission;
 mod universal;
 mod universal_angles;
 
-pub use amotor::AMotor;
+pub use amotor::{AMotor, AMotorMode};
+pub use axis::AxisFrame;
 pub use ball::Ball;
 pub use contact::{Contact, Surface, SurfaceMode};
 pub use dball::DBall;

@@ -108,3 +108,8 @@ pub(crate) fn own_softness(n: i32, erp: f64, cfm: f64) -> f64 {
         _ => 0.0,
     }
 }
+
+/// The axis, 0 … 2, of a motor with numbered axes that ODE's parameter number is for: 0x100 an axis.
+pub(crate) fn axis_index(n: i32) -> usize {
+    (n >> 8).clamp(0, 2) as usize
+}
