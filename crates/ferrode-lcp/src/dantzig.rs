@@ -52,6 +52,11 @@ pub enum DantzigStatus {
         /// How many rows were given up, that one included.
         given_up: usize,
     },
+    /// With [`DantzigOptions::recover`]: all rows are solved but some, which are held at the force they had when they got stuck.
+    Held {
+        /// How many rows are held.
+        rows: usize,
+    },
     /// The numbers given were not all finite, or grew beyond all bounds: every `x` and `w` was set to 0.
     NotFinite,
 }
@@ -77,10 +82,14 @@ pub struct DantzigOptions {
     /// The number of set changes after which to give up; by default 1000 + 100 n. In exact arithmetic the method ends by
     /// itself; with rounding and a singular matrix it could go round in circles.
     pub max_pivots: Option<u64>,
-    /// Go on when a step has no length, as happens when two slacks vanish together: take it as a step of zero and
-    /// change the sets all the same. ODE gives up at that point, and so does the default.
-    pub zero_steps: bool,
+    /// Go on when a step has no length, where ODE (and the default) gives up this row and all after it. Such a step is taken as
+    /// one of length zero, which resolves ties of two slacks that vanish together; a row that still cannot be
+    /// brought to its end is held at the force it has reached, and the rows after it are solved with that.
+    pub recover: bool,
 }
+
+/// So many steps of no length are taken for one row before it is held.
+const MOST_EMPTY_STEPS: u32 = 32;
 
 /// The row is in no place of the factor.
 const NOWHERE: u32 = u32::MAX;
@@ -116,6 +125,7 @@ pub struct DantzigWorkspace {
     frozen: bool,
     pivots: u64,
     dropped: usize,
+    held: usize,
 }
 
 impl DantzigWorkspace {
@@ -161,10 +171,8 @@ pub fn solve_dantzig_with(
 ) -> Result<DantzigReport, LcpError> {
     problem.check()?;
     let n = problem.n;
-    let limits = Limits {
-        max_pivots: options.max_pivots.unwrap_or(1000 + 100 * n as u64),
-        zero_steps: options.zero_steps,
-    };
+    let limits =
+        Limits { max_pivots: options.max_pivots.unwrap_or(1000 + 100 * n as u64), recover: options.recover };
     workspace.load(problem);
     workspace.solve_unbounded(problem.b);
     let mut status = DantzigStatus::Solved;
@@ -180,6 +188,9 @@ pub fn solve_dantzig_with(
             break;
         }
     }
+    if status == DantzigStatus::Solved && workspace.held > 0 {
+        status = DantzigStatus::Held { rows: workspace.held };
+    }
     workspace.store(problem, &mut status);
     Ok(DantzigReport {
         status,
@@ -194,7 +205,7 @@ pub fn solve_dantzig_with(
 #[derive(Clone, Copy)]
 struct Limits {
     max_pivots: u64,
-    zero_steps: bool,
+    recover: bool,
 }
 
 /// Why a row could not be taken in.
@@ -263,6 +274,7 @@ impl DantzigWorkspace {
         self.frozen = false;
         self.pivots = 0;
         self.dropped = 0;
+        self.held = 0;
 
         let mut unbounded = 0;
         for k in 0..n {
@@ -361,14 +373,26 @@ impl DantzigWorkspace {
     /// Drives the row at place `at` until it joins C or N.
     fn drive(&mut self, at: usize, limits: Limits) -> Result<(), Stop> {
         let row = self.order[at] as usize;
+        let (mut steps, mut empty_steps) = (0, 0);
         loop {
             let s = if self.w[row] <= 0.0 { 1.0 } else { -1.0 };
             self.direction(row, s);
             let Drive { mut step, event } = self.longest_step(at, s);
-            if limits.zero_steps && step <= 0.0 && step.is_finite() {
-                step = 0.0;
-            } else if !(step > 0.0 && step.is_finite()) {
+            let stuck = !(step > 0.0 && step.is_finite());
+            if stuck && (!limits.recover || step.is_nan()) {
                 return Err(Stop::Step(step));
+            }
+            if limits.recover {
+                empty_steps += u32::from(stuck);
+                steps += 1;
+                if step.is_infinite() || empty_steps > MOST_EMPTY_STEPS || steps > 100 + 4 * self.order.len()
+                {
+                    self.hold(row);
+                    return Ok(());
+                }
+                if stuck {
+                    step = 0.0;
+                }
             }
             if self.pivots >= limits.max_pivots {
                 return Err(Stop::Pivots);
@@ -399,6 +423,13 @@ impl DantzigWorkspace {
                 Event::HitUpper(k) => self.hit(k, true),
             }
         }
+    }
+
+    /// Leaves a row at the force it has: its bounds close on it, so that it stays in N for good.
+    fn hold(&mut self, row: usize) {
+        let x = self.x.as_flattened()[row];
+        (self.lo[row], self.hi[row]) = (x, x);
+        self.held += 1;
     }
 
     /// The forward solution `L^-1 A_Ci` for row i in `column`. What of it holds from before the last change of C is kept.
@@ -455,7 +486,7 @@ impl DantzigWorkspace {
         // 4: slacks of N that would take the wrong sign.
         for (k, &other) in self.order.iter().enumerate().take(at).skip(self.clamped) {
             let other = other as usize;
-            if lo[other] == 0.0 && hi[other] == 0.0 {
+            if lo[other] == hi[other] {
                 continue;
             }
             let dw = self.matrix.row_dot(other, &self.dx);
@@ -546,7 +577,7 @@ impl DantzigWorkspace {
         let n = problem.n;
         for &row in &self.order[self.clamped..] {
             let row = row as usize;
-            if self.lo[row] == 0.0 && self.hi[row] == 0.0 {
+            if self.lo[row] == self.hi[row] {
                 self.w[row] = self.matrix.row_dot(row, &self.x) - problem.b[row];
             }
         }

@@ -306,10 +306,16 @@ fn contradicting_rows_are_given_up_and_reported() {
         other => panic!("{other:?}"),
     }
     assert_eq!(answer.x, [1.0, 0.0, 0.0]);
+    // With recovery only the row that contradicts is lost.
+    let options = DantzigOptions { recover: true, ..DantzigOptions::default() };
+    let answer = p.solve_with(&mut DantzigWorkspace::new(), &options);
+    assert_eq!(answer.report.status, DantzigStatus::Held { rows: 1 });
+    assert_eq!(answer.x, [1.0, 0.0, 5.0]);
+    assert_eq!(answer.w, [0.0, -1.0, 0.0]);
 }
 
 #[test]
-fn a_tie_stops_the_algorithm_unless_zero_steps_are_allowed() {
+fn a_tie_stops_the_algorithm_unless_it_may_recover() {
     // Row 0 rests exactly: its slack is 0 at its bound. Driving row 1 would release it with a step of length 0.
     let p = small(
         &[2.0, -1.0, 0.0, -1.0, 2.0, 0.0, 0.0, 0.0, 1.0],
@@ -321,7 +327,7 @@ fn a_tie_stops_the_algorithm_unless_zero_steps_are_allowed() {
     let answer = p.solve();
     assert_eq!(answer.report.status, DantzigStatus::StepNotPositive { row: 1, step: 0.0, given_up: 2 });
     assert_eq!(answer.x, [0.0; 3]);
-    let options = DantzigOptions { zero_steps: true, ..DantzigOptions::default() };
+    let options = DantzigOptions { recover: true, ..DantzigOptions::default() };
     let answer = p.solve_with(&mut DantzigWorkspace::new(), &options);
     assert_eq!(answer.report.status, DantzigStatus::Solved);
     assert!((answer.x[0] - 1.0).abs() < 1e-15 && (answer.x[1] - 2.0).abs() < 1e-15, "{:?}", answer.x);
