@@ -134,9 +134,14 @@ impl JointRef<'_, PU> {
         self.data.axes.in_callers_order(&self.ends())[1]
     }
 
-    /// The prismatic axis in world coordinates, of unit length. ODE has it as axis 3, too.
-    pub fn axis_p(&self) -> Vec3 {
+    /// The prismatic axis in world coordinates, of unit length.
+    pub fn axis3(&self) -> Vec3 {
         self.data.prismatic_axis(&self.ends())
+    }
+
+    /// The same as [`Self::axis3`].
+    pub fn axis_p(&self) -> Vec3 {
+        self.axis3()
     }
 
     /// Both angles, of one measurement; (0, 0) in limbo. For a joint attached as (world, body) they are exchanged, but not
@@ -278,12 +283,20 @@ impl JointMut<'_, PU> {
         Ok(())
     }
 
-    /// Sets the prismatic axis, in world coordinates and of any length, and makes the present angles 0. Does nothing in
-    /// limbo. ODE has it as axis 3, too.
+    /// The same as [`Self::set_axis3`].
     ///
     /// # Errors
     /// [`Error::NotFinite`], [`Error::ZeroVector`].
     pub fn set_axis_p(&mut self, axis: Vec3) -> Result<(), Error> {
+        self.set_axis3(axis)
+    }
+
+    /// Sets the prismatic axis, in world coordinates and of any length, and makes the present angles 0. Does nothing in
+    /// limbo.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`], [`Error::ZeroVector`].
+    pub fn set_axis3(&mut self, axis: Vec3) -> Result<(), Error> {
         let axis = unit("prismatic axis", axis)?;
         let (pu, ends) = self.parts();
         if ends.first.is_some() {
