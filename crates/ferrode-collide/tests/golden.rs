@@ -131,3 +131,42 @@ fn segment_points_are_libodes() {
         assert!(parallel && (a - b).length() < (p("cp1") - p("cp2")).length(), "{case}: {a:?} {b:?}");
     }
 }
+
+/// Convex pairs that libode leaves to portal refinement: depth against the true least translation, found
+/// independently by a search over directions (good to 1e-5).
+#[test]
+fn convex_pairs_have_the_true_depth() {
+    let mut replayed = 0;
+    for case in recorded("collision.json")["cases"].as_array().unwrap() {
+        if case["quality"] != "mpr" {
+            continue;
+        }
+        let (Some(a), Some(b)) = (geom(&case["a"]), geom(&case["b"])) else { continue };
+        let got = collide(&a, &b, 0x7fff);
+        if case["truth"].is_null() {
+            assert_eq!(got.is_empty(), case["n"] == 0, "{case}\n{got:?}");
+            continue;
+        }
+        let truth = number(&case["truth"]["mtd"]);
+        let one = collide(&a, &b, 1);
+        if truth < -1e-4 {
+            assert!(got.is_empty(), "{case}\n{got:?}");
+            continue;
+        }
+        if truth < 1e-4 {
+            continue;
+        }
+        replayed += 1;
+        let deepest = got.iter().map(|c| c.point.depth).fold(0.0, f64::max);
+        // The search comes from above: it may stop short of the least by more than it may go below.
+        let right = |depth: f64| depth < truth + 1e-5 && depth > truth - 1e-4;
+        assert!(right(deepest), "{case}\n{got:?}");
+        assert!(one.len() == 1 && right(one[0].point.depth), "{case}\n{one:?}");
+        for c in &got {
+            assert!((c.point.normal.length() - 1.0).abs() < 1e-12, "{case}\n{got:?}");
+            assert_eq!(c.point.normal, got[0].point.normal, "{case}");
+        }
+    }
+    println!("{replayed} cases");
+    assert!(replayed >= 20, "{replayed}");
+}

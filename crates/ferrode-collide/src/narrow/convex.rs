@@ -1,0 +1,139 @@
+//! The contact of any two convex bodies: distance if their cores are apart, least overlap if not.
+
+use super::epa::epa;
+use super::gjk::{Gap, gjk};
+use super::support::Body;
+use ferrode_math::Vec3;
+
+/// Where and how deep two bodies touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    /// Unit, into the first body.
+    pub normal: Vec3,
+    pub depth: f64,
+    /// The deepest point of the first body within the second, and of the second within the first.
+    pub a: Vec3,
+    pub b: Vec3,
+}
+
+/// The contact of two convex bodies; `None` if they are apart.
+pub(crate) fn touch(a: &Body, b: &Body) -> Option<Touch> {
+    let margin = a.margin + b.margin;
+    let simplex = match gjk(a, b, margin) {
+        Gap::Far => return None,
+        Gap::Apart { a: pa, b: pb, between } => {
+            let distance = between.length();
+            if !(distance <= margin) {
+                return None;
+            }
+            let normal = between.normalized()?;
+            let depth = margin - distance;
+            return Some(Touch { normal, depth, a: pa - normal * a.margin, b: pb + normal * b.margin });
+        }
+        Gap::Overlap(simplex) => simplex,
+    };
+    if let Some(d) = epa(a, b, &simplex) {
+        return Some(Touch {
+            normal: -d.normal,
+            depth: d.depth + margin,
+            a: d.a + d.normal * a.margin,
+            b: d.b - d.normal * b.margin,
+        });
+    }
+    // The difference of the cores is flat: they cross without depth, and part across it.
+    let (pa, pb) = simplex.witnesses();
+    let normal = flat_normal(a, b);
+    Some(Touch { normal, depth: margin, a: pa - normal * a.margin, b: pb + normal * b.margin })
+}
+
+/// A direction across two cores whose difference is flat, on the side of the first one's centre.
+fn flat_normal(a: &Body, b: &Body) -> Vec3 {
+    let between = a.center - b.center;
+    let across = a.axis(2).cross(b.axis(2));
+    let n = across
+        .normalized()
+        .or_else(|| (between - a.axis(2) * a.axis(2).dot(between)).normalized())
+        .unwrap_or_else(|| a.axis(0));
+    if n.dot(between) < 0.0 { -n } else { n }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::narrow::{closest_segment_cuboid, closest_segment_points, cuboid_cuboid};
+    use crate::{Capsule, CollideOptions, Contacts, Cuboid, Frame, Sphere};
+    use ferrode_math::{Pose, Quat};
+    use proptest::prelude::*;
+
+    fn frame() -> impl Strategy<Value = Frame> {
+        (prop::array::uniform3(-1.5..1.5f64), prop::array::uniform4(-1.0..1.0f64)).prop_map(|(p, q)| {
+            let q = Quat::from_array(q).normalized().unwrap_or(Quat::IDENTITY);
+            Frame::from(&Pose::new(Vec3::from_array(p), q))
+        })
+    }
+
+    fn half_sides() -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(0.1..1.0f64).prop_map(Vec3::from_array)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(1000))]
+
+        /// Against the fifteen axes: an edge axis may lose against a face in `cuboid_cuboid` by 5 %, never otherwise.
+        #[test]
+        fn boxes_agree_with_separating_axes(fa in frame(), fb in frame(), ha in half_sides(), hb in half_sides()) {
+            let (ca, cb) = (Cuboid::from_half_sides(ha).unwrap(), Cuboid::from_half_sides(hb).unwrap());
+            let mut list = Vec::new();
+            let mut out = Contacts::new(&mut list, CollideOptions::new(1));
+            let sat = cuboid_cuboid(&ca, &fa, &cb, &fb, &mut out);
+            let gjk = touch(&Body::cuboid(&ca, &fa, fa.position), &Body::cuboid(&cb, &fb, fa.position));
+            match (sat, gjk) {
+                (None, None) => {}
+                (Some(s), Some(g)) => {
+                    prop_assert!(g.depth <= s.depth + 1e-9, "{s:?} {g:?}");
+                    prop_assert!(g.depth * 1.05 >= s.depth - 1e-9, "{s:?} {g:?}");
+                    prop_assert!((g.normal.dot(g.b - g.a) - g.depth).abs() < 1e-7, "{g:?}");
+                }
+                (s, g) => {
+                    let depth = s.map_or(0.0, |s| s.depth) + g.map_or(0.0, |g| g.depth);
+                    prop_assert!(depth < 1e-9, "{s:?} {g:?}");
+                }
+            }
+        }
+
+        /// Rounded bodies whose cores are apart: the distance has a formula.
+        #[test]
+        fn rounded_bodies_agree_with_formulas(
+            fa in frame(), fb in frame(), half in half_sides(), r in 0.1..1.0f64, s in 0.1..1.0f64,
+        ) {
+            let (c1, c2) = (Capsule::new(r, half.x).unwrap(), Capsule::new(s, half.y).unwrap());
+            let (b1, b2) = (Body::capsule(&c1, &fa, fa.position), Body::capsule(&c2, &fb, fa.position));
+            let ((p1, p2), (q1, q2)) = (c1.segment(&fa), c2.segment(&fb));
+            let (p, q) = closest_segment_points(p1, p2, q1, q2);
+            let want = r + s - (p - q).length();
+            let got = touch(&b1, &b2).map_or(-1.0, |t| t.depth);
+            prop_assert!(if want < 0.0 { got < 0.0 } else { (got - want).abs() < 1e-9 }, "{want} {got}");
+
+            let cuboid = Cuboid::from_half_sides(half).unwrap();
+            let (p, q) = closest_segment_cuboid(p1, p2, &cuboid, &fb);
+            let want = r - (p - q).length();
+            let got = touch(&b1, &Body::cuboid(&cuboid, &fb, fa.position)).map_or(-1.0, |t| t.depth);
+            if (p - q).length() > 1e-9 {
+                prop_assert!(if want < 0.0 { got < 0.0 } else { (got - want).abs() < 1e-9 }, "{want} {got}");
+            } else {
+                prop_assert!(got >= r, "{got}");
+            }
+
+            let ball = Sphere::new(s).unwrap();
+            let mut list = Vec::new();
+            let mut out = Contacts::new(&mut list, CollideOptions::new(1));
+            crate::narrow::sphere_cuboid(&ball, &fa, &cuboid, &fb, &mut out);
+            let got = touch(&Body::sphere(&ball, &fa, fa.position), &Body::cuboid(&cuboid, &fb, fa.position));
+            match (list.first(), got) {
+                (None, None) => {}
+                (Some(w), Some(g)) => prop_assert!((w.point.depth - g.depth).abs() < 1e-9, "{w:?} {g:?}"),
+                (w, g) => prop_assert!(false, "{w:?} {g:?}"),
+            }
+        }
+    }
+}

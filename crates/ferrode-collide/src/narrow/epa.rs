@@ -1,0 +1,192 @@
+//! Depth of two convex bodies that overlap, by the expanding polytope (van den Bergen, *Proximity queries and
+//! penetration depth computation on 3D game objects*, 2001).
+//!
+//! A polytope within the difference {a − b} grows around the origin at its face nearest to it, until that face lies on
+//! the difference's surface: its normal is the direction of least overlap.
+
+use super::gjk::Simplex;
+use super::support::{Body, Vertex, difference};
+use ferrode_math::Vec3;
+
+const VERTICES: usize = 100;
+const FACES: usize = 256;
+const EDGES: usize = 128;
+
+/// The least overlap of two cores.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Depth {
+    /// Unit: moving the first body by −normal · depth separates the two.
+    pub normal: Vec3,
+    pub depth: f64,
+    /// The points of the bodies that touch then, before that move.
+    pub a: Vec3,
+    pub b: Vec3,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Face {
+    v: [u8; 3],
+    normal: Vec3,
+    distance: f64,
+}
+
+struct Polytope {
+    vertices: [Vertex; VERTICES],
+    vertex_count: usize,
+    faces: [Face; FACES],
+    face_count: usize,
+}
+
+impl Polytope {
+    /// A face with the given corners; one without area is never the nearest.
+    fn add_face(&mut self, v: [u8; 3]) -> bool {
+        if self.face_count == FACES {
+            return false;
+        }
+        let w = |i: usize| self.vertices[usize::from(v[i])].w;
+        let (e, f) = (w(1) - w(0), w(2) - w(0));
+        let cross = e.cross(f);
+        let area = cross.length();
+        let flat = !(area > 1e-14 * (e.length() * f.length()).max(f64::MIN_POSITIVE));
+        let normal = if flat { Vec3::ZERO } else { cross * (1.0 / area) };
+        let distance = if flat { f64::INFINITY } else { normal.dot(w(0)) };
+        self.faces[self.face_count] = Face { v, normal, distance };
+        self.face_count += 1;
+        true
+    }
+
+    fn nearest_face(&self) -> Option<Face> {
+        let mut best: Option<Face> = None;
+        for f in &self.faces[..self.face_count] {
+            if f.distance.is_finite() && best.is_none_or(|b| f.distance < b.distance) {
+                best = Some(*f);
+            }
+        }
+        best
+    }
+
+    /// Replaces all faces that see `next` by a fan of faces to it. False if there is no room.
+    fn expand(&mut self, next: Vertex, slack: f64) -> bool {
+        if self.vertex_count == VERTICES {
+            return false;
+        }
+        let apex = self.vertex_count as u8;
+        let mut edges = [(0u8, 0u8); EDGES];
+        let mut edge_count = 0;
+        let mut i = 0;
+        while i < self.face_count {
+            let f = self.faces[i];
+            let first = self.vertices[usize::from(f.v[0])].w;
+            let visible = f.distance.is_finite() && f.normal.dot(next.w - first) > slack;
+            if !visible {
+                i += 1;
+                continue;
+            }
+            for (from, to) in [(f.v[0], f.v[1]), (f.v[1], f.v[2]), (f.v[2], f.v[0])] {
+                // An edge met from both sides lies inside the hole.
+                if let Some(k) = edges[..edge_count].iter().position(|&e| e == (to, from)) {
+                    edge_count -= 1;
+                    edges[k] = edges[edge_count];
+                } else if edge_count < EDGES {
+                    edges[edge_count] = (from, to);
+                    edge_count += 1;
+                } else {
+                    return false;
+                }
+            }
+            self.face_count -= 1;
+            self.faces[i] = self.faces[self.face_count];
+        }
+        if edge_count == 0 || self.face_count + edge_count > FACES {
+            return false;
+        }
+        self.vertices[self.vertex_count] = next;
+        self.vertex_count += 1;
+        edges[..edge_count].iter().all(|&(from, to)| self.add_face([from, to, apex]))
+    }
+}
+
+/// Completes a simplex to a tetrahedron; `None` if the difference is flat.
+fn tetrahedron(a: &Body, b: &Body, simplex: &Simplex, scale: f64) -> Option<[Vertex; 4]> {
+    let small = 1e-12 * scale;
+    let mut v = simplex.vertices;
+    let mut n = simplex.count;
+    if n == 1 {
+        let far = |p: &Vertex| (p.w - v[0].w).length() > small;
+        let axes = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z];
+        v[1] = axes.iter().map(|&d| difference(a, b, d)).find(far)?;
+        n = 2;
+    }
+    if n == 2 {
+        let line = (v[1].w - v[0].w).normalized()?;
+        let (p, q) = ferrode_math::plane_space(line);
+        let far = |x: &Vertex| (x.w - v[0].w).cross(line).length() > small;
+        v[2] = [p, -p, q, -q, p + q, p - q, q - p, -p - q].iter().map(|&d| difference(a, b, d)).find(far)?;
+        n = 3;
+    }
+    if n == 3 {
+        let normal = (v[1].w - v[0].w).cross(v[2].w - v[0].w).normalized()?;
+        let far = |x: &Vertex| (x.w - v[0].w).dot(normal).abs() > small;
+        v[3] = [normal, -normal].iter().map(|&d| difference(a, b, d)).find(far)?;
+    }
+    Some(v)
+}
+
+/// The least overlap of two cores that share a point. `None` if their difference is flat, and so the overlap nil.
+pub(crate) fn epa(a: &Body, b: &Body, simplex: &Simplex) -> Option<Depth> {
+    let scale = a.reach() + b.reach();
+    let corners = tetrahedron(a, b, simplex, scale)?;
+    let mut p = Polytope {
+        vertices: [Vertex::default(); VERTICES],
+        vertex_count: 4,
+        faces: [Face::default(); FACES],
+        face_count: 0,
+    };
+    p.vertices[..4].copy_from_slice(&corners);
+    let w = |i: usize| corners[i].w;
+    let volume = (w(1) - w(0)).cross(w(2) - w(0)).dot(w(3) - w(0));
+    // Faces counter-clockwise seen from outside.
+    let faces = if volume < 0.0 {
+        [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]
+    } else {
+        [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    };
+    for f in faces {
+        p.add_face(f);
+    }
+    let tolerance = 1e-11 * scale;
+    let slack = 1e-15 * scale;
+    let mut best = p.nearest_face()?;
+    let mut upper = f64::INFINITY;
+    let mut result = best;
+    for _ in 0..VERTICES {
+        let next = difference(a, b, best.normal);
+        let reach = best.normal.dot(next.w);
+        // Of all normals tried, the one along which the bodies overlap least; of equals the last, whose face touches the
+        // surface and so has the points that touch.
+        if reach <= upper + tolerance {
+            upper = reach.min(upper);
+            result = best;
+        }
+        if reach - best.distance <= tolerance || !p.expand(next, slack) {
+            break;
+        }
+        match p.nearest_face() {
+            Some(f) => best = f,
+            None => break,
+        }
+    }
+    let [i, j, k] = result.v.map(|i| p.vertices[usize::from(i)]);
+    let (places, weights, n) = nearest_on_face(&i, &j, &k, result.normal * result.distance);
+    let corner = [i, j, k];
+    let (mut pa, mut pb) = (Vec3::ZERO, Vec3::ZERO);
+    for m in 0..n {
+        pa += corner[places[m]].a * weights[m];
+        pb += corner[places[m]].b * weights[m];
+    }
+    Some(Depth { normal: result.normal, depth: upper.max(0.0), a: pa, b: pb })
+}
+
+fn nearest_on_face(i: &Vertex, j: &Vertex, k: &Vertex, p: Vec3) -> ([usize; 3], [f64; 3], usize) {
+    super::gjk::nearest_of_triangle(i.w - p, j.w - p, k.w - p)
+}

@@ -1,0 +1,261 @@
+//! From the deepest point to all points: the features that face each other, clipped.
+
+use super::convex::Touch;
+use super::support::{Body, Core};
+use crate::Contacts;
+use ferrode_math::Vec3;
+
+/// Most corners of a clipped feature.
+const CORNERS: usize = 24;
+/// Most contacts of a pair.
+const MOST: usize = 8;
+/// Cosine of normal and face beyond which the face is what touches.
+const FACE: f64 = 1.0 - 1e-6;
+/// Sine of the angle between edges, or edge and face, below which they are parallel.
+const PARALLEL: f64 = 1e-3;
+
+/// The face, edge or corner of a body that faces a direction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Feature {
+    pub points: [Vec3; 8],
+    pub count: usize,
+    /// Outward unit normal of a face; of an edge or corner there is none.
+    pub normal: Option<Vec3>,
+}
+
+impl Feature {
+    fn corner(p: Vec3) -> Self {
+        Self { points: [p; 8], count: 1, normal: None }
+    }
+
+    fn edge(p: Vec3, q: Vec3) -> Self {
+        let mut f = Self::corner(p);
+        f.points[1] = q;
+        f.count = 2;
+        f
+    }
+
+    /// The feature of `body` that faces the unit vector `d`.
+    pub fn of(body: &Body, d: Vec3) -> Self {
+        let u = body.axis(2);
+        let shell = d * body.margin;
+        match body.core {
+            Core::Point => Self::corner(body.center + shell),
+            Core::Segment(half) => {
+                if d.dot(u).abs() < 0.5 {
+                    Self::edge(body.center + u * half + shell, body.center - u * half + shell)
+                } else {
+                    Self::corner(body.support(d) + shell)
+                }
+            }
+            Core::Cuboid(h) => {
+                let l = body.rotation.transpose_mul(d);
+                let a = l.abs();
+                let i = if a.x >= a.y && a.x >= a.z {
+                    0
+                } else if a.y >= a.z {
+                    1
+                } else {
+                    2
+                };
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let sign = if l[i] < 0.0 { -1.0 } else { 1.0 };
+                let mut f = Self::corner(Vec3::ZERO);
+                f.count = 4;
+                f.normal = Some(body.axis(i) * sign);
+                // Counter-clockwise about the outward normal.
+                for (m, (sj, sk)) in
+                    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].into_iter().enumerate()
+                {
+                    let mut p = Vec3::ZERO;
+                    p[i] = sign * h[i];
+                    p[j] = sj * sign * h[j];
+                    p[k] = sk * h[k];
+                    f.points[m] = body.place(p);
+                }
+                f
+            }
+            Core::Cylinder(radius, half) => {
+                let along = d.dot(u);
+                let radial = d - u * along;
+                if along.abs() > core::f64::consts::FRAC_1_SQRT_2 {
+                    let sign = if along < 0.0 { -1.0 } else { 1.0 };
+                    disc(body.center + u * (sign * half), u * sign, radius, radial, body.axis(0))
+                } else {
+                    let rim = body.center + radial.normalized_or(body.axis(0)) * radius;
+                    Self::edge(rim + u * half, rim - u * half)
+                }
+            }
+        }
+    }
+}
+
+/// An octagon within a disc; a corner of it points along `radial`, where the disc reaches furthest, or along
+/// `fallback` if that is nothing.
+fn disc(center: Vec3, normal: Vec3, radius: f64, radial: Vec3, fallback: Vec3) -> Feature {
+    let x = if radial.length() > 1e-9 { radial.normalized_or(fallback) } else { fallback };
+    let y = normal.cross(x);
+    let s = core::f64::consts::FRAC_1_SQRT_2;
+    let mut f = Feature::corner(center);
+    f.count = 8;
+    f.normal = Some(normal);
+    for (k, (c, t)) in [(1.0, 0.0), (s, s), (0.0, 1.0), (-s, s), (-1.0, 0.0), (-s, -s), (0.0, -1.0), (s, -s)]
+        .into_iter()
+        .enumerate()
+    {
+        f.points[k] = center + (x * c + y * t) * radius;
+    }
+    f
+}
+
+/// A few contacts, before those wanted are chosen.
+struct Found {
+    list: [(Vec3, f64); CORNERS],
+    count: usize,
+}
+
+impl Found {
+    fn push(&mut self, position: Vec3, depth: f64) {
+        if self.count < CORNERS {
+            self.list[self.count] = (position, depth);
+            self.count += 1;
+        }
+    }
+
+    fn deepest(&self) -> usize {
+        let mut best = 0;
+        for i in 1..self.count {
+            if self.list[i].1 > self.list[best].1 {
+                best = i;
+            }
+        }
+        best
+    }
+}
+
+/// Adds the contacts of two bodies that touch. `origin` is added to all positions.
+///
+/// A face that touches is the reference: the other body's feature is clipped to it, and each corner left below it is a
+/// contact with its own depth, midway between the two surfaces. Parallel edges touch at both ends of their common
+/// stretch. Everything else touches at one point. If there are more than wanted, the deepest stays, and those furthest
+/// from the ones that stay.
+pub(crate) fn add_manifold(a: &Body, b: &Body, touch: &Touch, origin: Vec3, out: &mut Contacts<'_>) {
+    let n = touch.normal;
+    let single = ((touch.a + touch.b) * 0.5, touch.depth);
+    let mut found = Found { list: [(Vec3::ZERO, 0.0); CORNERS], count: 0 };
+    if out.capacity() > 1 && !out.options().unimportant {
+        let (fa, fb) = (Feature::of(a, -n), Feature::of(b, n));
+        let aligned_a = fa.normal.map_or(0.0, |m| -m.dot(n));
+        let aligned_b = fb.normal.map_or(0.0, |m| m.dot(n));
+        if aligned_a.max(aligned_b) > FACE {
+            let (face, other) = if aligned_a >= aligned_b { (&fa, &fb) } else { (&fb, &fa) };
+            clip_to_face(face, other, &mut found);
+        } else if fa.count == 2 && fb.count == 2 {
+            clip_edges(&fa, &fb, n, &mut found);
+        }
+    }
+    let scale = 1e-6 * (a.reach() + b.reach());
+    if found.count == 0 {
+        found.push(single.0, single.1);
+    } else if found.list[found.deepest()].1 < touch.depth - scale {
+        // The features are flatter than the bodies: keep the point that decides.
+        found.count = found.count.min(CORNERS - 1);
+        found.push(single.0, single.1);
+    }
+    let wanted = out.capacity().min(MOST);
+    if found.count <= wanted {
+        for &(p, depth) in &found.list[..found.count] {
+            out.push(origin + p, n, depth);
+        }
+        return;
+    }
+    let mut nearest = [f64::INFINITY; CORNERS];
+    let mut next = found.deepest();
+    for _ in 0..wanted {
+        let (p, depth) = found.list[next];
+        out.push(origin + p, n, depth);
+        nearest[next] = f64::NEG_INFINITY;
+        let mut furthest = next;
+        for i in 0..found.count {
+            nearest[i] = nearest[i].min((found.list[i].0 - p).length_squared());
+            if nearest[i] > nearest[furthest] {
+                furthest = i;
+            }
+        }
+        next = furthest;
+    }
+}
+
+/// Clips `other` to the sides of `face` and keeps what is below it.
+fn clip_to_face(face: &Feature, other: &Feature, found: &mut Found) {
+    let Some(normal) = face.normal else { return };
+    let mut points = [Vec3::ZERO; CORNERS];
+    points[..other.count].copy_from_slice(&other.points[..other.count]);
+    let mut count = other.count;
+    for i in 0..face.count {
+        let (p, q) = (face.points[i], face.points[(i + 1) % face.count]);
+        // Into the face, across this side.
+        let Some(inward) = normal.cross(q - p).normalized() else { continue };
+        count = clip(&mut points, count, inward, inward.dot(p));
+    }
+    let level = normal.dot(face.points[0]);
+    for p in &points[..count] {
+        let depth = level - normal.dot(*p);
+        if depth >= 0.0 {
+            found.push(*p + normal * (0.5 * depth), depth);
+        }
+    }
+}
+
+/// Keeps the part of a polygon, segment or point with n · x ≥ level.
+fn clip(points: &mut [Vec3; CORNERS], count: usize, n: Vec3, level: f64) -> usize {
+    let mut kept = [Vec3::ZERO; CORNERS];
+    let mut m = 0;
+    let mut keep = |p: Vec3| {
+        if m < CORNERS {
+            kept[m] = p;
+            m += 1;
+        }
+    };
+    // A segment is walked once, a polygon round.
+    let sides = if count <= 2 { count.saturating_sub(1) } else { count };
+    for i in 0..count {
+        let p = points[i];
+        let hp = n.dot(p) - level;
+        if hp >= 0.0 {
+            keep(p);
+        }
+        if i < sides {
+            let q = points[(i + 1) % count];
+            let hq = n.dot(q) - level;
+            if (hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0) {
+                keep(p + (q - p) * (hp / (hp - hq)));
+            }
+        }
+    }
+    *points = kept;
+    m
+}
+
+/// The common stretch of two parallel edges.
+fn clip_edges(a: &Feature, b: &Feature, n: Vec3, found: &mut Found) {
+    let (sa, sb) = (a.points[1] - a.points[0], b.points[1] - b.points[0]);
+    let (Some(ua), Some(ub)) = (sa.normalized(), sb.normalized()) else { return };
+    if ua.cross(ub).length() > PARALLEL || ua.dot(n).abs() > PARALLEL {
+        return;
+    }
+    let along = |p: Vec3| ua.dot(p - a.points[0]);
+    let (b0, b1) = (along(b.points[0]), along(b.points[1]));
+    let (lo, hi) = (b0.min(b1).max(0.0), b0.max(b1).min(sa.length()));
+    if !(lo < hi) {
+        return;
+    }
+    for x in [lo, hi] {
+        let pa = a.points[0] + ua * x;
+        let pb = b.points[0] + sb * ((x - b0) / (b1 - b0));
+        let depth = n.dot(pb - pa);
+        if depth >= 0.0 {
+            found.push((pa + pb) * 0.5, depth);
+        }
+    }
+}

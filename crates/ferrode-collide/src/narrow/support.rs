@@ -1,0 +1,114 @@
+//! Convex bodies by their support functions, for the algorithms that need no more.
+
+use crate::{Capsule, Cuboid, Cylinder, Frame, Shape, Sphere};
+use ferrode_math::{Mat3, Vec3};
+
+/// The part of a convex body that is left when a margin of constant width is taken off, in its own coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Core {
+    /// The origin.
+    Point,
+    /// ±half on the z axis.
+    Segment(f64),
+    /// Half sides.
+    Cuboid(Vec3),
+    /// Radius and half length.
+    Cylinder(f64, f64),
+}
+
+/// A convex body: all points within `margin` of a core at a place. Rounded shapes have exact contacts that way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body {
+    pub core: Core,
+    pub rotation: Mat3,
+    /// Relative to the pair's origin, so that a pair far from the world's loses nothing.
+    pub center: Vec3,
+    pub margin: f64,
+}
+
+impl Body {
+    /// The body of a convex shape of finite size.
+    pub fn of(shape: &Shape, frame: &Frame, origin: Vec3) -> Option<Self> {
+        Some(match shape {
+            Shape::Sphere(s) => Self::sphere(s, frame, origin),
+            Shape::Cuboid(s) => Self::cuboid(s, frame, origin),
+            Shape::Capsule(s) => Self::capsule(s, frame, origin),
+            Shape::Cylinder(s) => Self::cylinder(s, frame, origin),
+            Shape::Plane(_) | Shape::Ray(_) => return None,
+        })
+    }
+
+    pub fn sphere(s: &Sphere, frame: &Frame, origin: Vec3) -> Self {
+        Self::new(Core::Point, s.radius(), frame, origin)
+    }
+
+    pub fn cuboid(s: &Cuboid, frame: &Frame, origin: Vec3) -> Self {
+        Self::new(Core::Cuboid(s.half_sides()), 0.0, frame, origin)
+    }
+
+    pub fn capsule(s: &Capsule, frame: &Frame, origin: Vec3) -> Self {
+        Self::new(Core::Segment(0.5 * s.length()), s.radius(), frame, origin)
+    }
+
+    pub fn cylinder(s: &Cylinder, frame: &Frame, origin: Vec3) -> Self {
+        Self::new(Core::Cylinder(s.radius(), 0.5 * s.length()), 0.0, frame, origin)
+    }
+
+    fn new(core: Core, margin: f64, frame: &Frame, origin: Vec3) -> Self {
+        Self { core, rotation: frame.rotation, center: frame.position - origin, margin }
+    }
+
+    /// The point of the core furthest along `d`, which need not be a unit vector.
+    #[inline]
+    pub fn support(&self, d: Vec3) -> Vec3 {
+        let l = self.rotation.transpose_mul(d);
+        let sign = |x: f64, s: f64| if x < 0.0 { -s } else { s };
+        let p = match self.core {
+            Core::Point => return self.center,
+            Core::Segment(half) => Vec3::new(0.0, 0.0, sign(l.z, half)),
+            Core::Cuboid(h) => Vec3::new(sign(l.x, h.x), sign(l.y, h.y), sign(l.z, h.z)),
+            Core::Cylinder(radius, half) => {
+                let flat = (l.x * l.x + l.y * l.y).sqrt();
+                let scale = if flat > 0.0 { radius / flat } else { 0.0 };
+                Vec3::new(l.x * scale, l.y * scale, sign(l.z, half))
+            }
+        };
+        self.center + self.rotation * p
+    }
+
+    /// A length that no part of the body is further than from its centre.
+    pub fn reach(&self) -> f64 {
+        let core = match self.core {
+            Core::Point => 0.0,
+            Core::Segment(half) => half,
+            Core::Cuboid(h) => h.length(),
+            Core::Cylinder(radius, half) => (radius * radius + half * half).sqrt(),
+        };
+        core + self.margin
+    }
+
+    /// World axis `i` of the body.
+    pub fn axis(&self, i: usize) -> Vec3 {
+        self.rotation.column(i)
+    }
+
+    /// A point from the body's own coordinates.
+    pub fn place(&self, p: Vec3) -> Vec3 {
+        self.center + self.rotation * p
+    }
+}
+
+/// A point of the difference of two bodies, and the points of either that it comes from.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Vertex {
+    pub w: Vec3,
+    pub a: Vec3,
+    pub b: Vec3,
+}
+
+/// The point of a − b furthest along `d`.
+#[inline]
+pub(crate) fn difference(a: &Body, b: &Body, d: Vec3) -> Vertex {
+    let (a, b) = (a.support(d), b.support(-d));
+    Vertex { w: a - b, a, b }
+}
