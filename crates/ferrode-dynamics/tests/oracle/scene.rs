@@ -1,0 +1,676 @@
+//! Random scenes, each from a seed of its own.
+
+use super::engine::Engine;
+use super::{Line, Record};
+use ferrode_dynamics::{Axis, Error, JointType, Mass, SurfaceMode};
+use ferrode_math::random::OdeRandom;
+use ferrode_math::{Mat3, Quat, Vec3};
+
+/// A scene: how it is made, and what happens before each of its steps.
+pub struct Scene {
+    pub seed: u32,
+    pub setup: Vec<Line>,
+    /// What is done before every step.
+    each_step: Vec<Line>,
+    touching: Vec<Touching>,
+    pub h: f64,
+    /// Whether the constraints may depend on each other, so that forces, and what follows from them, are decided by
+    /// rounding.
+    pub redundant: bool,
+    /// The types of joints in it, contacts included.
+    pub types: Vec<JointType>,
+}
+
+/// A contact that is made in each step from the bodies' state: spheres and boxes against the plane z = 0, and spheres against
+/// each other.
+struct Touching {
+    first: usize,
+    /// The other sphere, or `None` for the plane.
+    second: Option<usize>,
+    /// Radius, or half sides.
+    size: [Vec3; 2],
+    reverse: bool,
+    surface: Vec<f64>,
+    fdir1: Vec3,
+}
+
+/// Random numbers in the ranges that scenes need.
+struct Dice(OdeRandom);
+
+impl Dice {
+    fn below(&mut self, n: usize) -> usize {
+        self.0.next_below(n as u32) as usize
+    }
+
+    fn range(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.0.next_real()
+    }
+
+    fn chance(&mut self, p: f64) -> bool {
+        self.0.next_real() < p
+    }
+
+    fn vector(&mut self, range: f64) -> Vec3 {
+        self.0.next_vector(range)
+    }
+
+    fn rotation(&mut self) -> Quat {
+        loop {
+            let q = Quat::from_parts(self.0.next_signed(1.0), self.vector(1.0));
+            if let (true, Some(unit)) = (q.dot(q) > 0.01, q.normalized()) {
+                return unit;
+            }
+        }
+    }
+
+    /// Three perpendicular unit vectors.
+    fn frame(&mut self) -> [Vec3; 3] {
+        let m = self.rotation().to_matrix();
+        [m.column(0), m.column(1), m.column(2)]
+    }
+}
+
+/// Which bodies hang together, to tell when constraints may be redundant.
+struct Components {
+    parent: Vec<usize>,
+    /// How often the component is held by something that does not move.
+    held: Vec<usize>,
+    loops: bool,
+}
+
+impl Components {
+    fn new(n: usize) -> Self {
+        Self { parent: (0..n).collect(), held: vec![0; n], loops: false }
+    }
+
+    fn root(&self, mut i: usize) -> usize {
+        while self.parent[i] != i {
+            i = self.parent[i];
+        }
+        i
+    }
+
+    fn link(&mut self, a: usize, b: Option<usize>) {
+        let a = self.root(a);
+        match b.map(|b| self.root(b)) {
+            None => self.held[a] += 1,
+            Some(b) if a == b => self.loops = true,
+            Some(b) => {
+                self.parent[a] = b;
+                self.held[b] += self.held[a];
+            }
+        }
+    }
+
+    /// Whether one more link would, or might, be redundant.
+    fn would_close(&self, a: usize, b: Option<usize>) -> bool {
+        let a = self.root(a);
+        match b.map(|b| self.root(b)) {
+            None => self.held[a] > 0,
+            Some(b) => a == b || self.held[a] + self.held[b] > 1,
+        }
+    }
+
+    fn redundant(&self) -> bool {
+        self.loops || (0..self.parent.len()).any(|i| self.root(i) == i && self.held[i] > 1)
+    }
+}
+
+const JOINTS: [JointType; 16] = [
+    JointType::Ball,
+    JointType::Hinge,
+    JointType::Slider,
+    JointType::Universal,
+    JointType::Hinge2,
+    JointType::Fixed,
+    JointType::Null,
+    JointType::AMotor,
+    JointType::LMotor,
+    JointType::Plane2D,
+    JointType::PR,
+    JointType::PU,
+    JointType::Piston,
+    JointType::DBall,
+    JointType::DHinge,
+    JointType::Transmission,
+];
+
+impl Scene {
+    pub fn random(seed: u32) -> Self {
+        let mut dice = Dice(OdeRandom::new(seed.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995));
+        dice.0.skip(8);
+        let mut scene = Self {
+            seed,
+            setup: Vec::new(),
+            each_step: Vec::new(),
+            touching: Vec::new(),
+            h: [0.005, 0.01, 0.02][dice.below(3)],
+            redundant: false,
+            types: Vec::new(),
+        };
+        scene.add_world(&mut dice);
+        let n = 1 + dice.below(6);
+        let mut positions = Vec::new();
+        let mut kinematic = Vec::new();
+        for i in 0..n {
+            let p = dice.vector(1.5);
+            kinematic.push(scene.add_body(&mut dice, i, p));
+            positions.push(p);
+        }
+        let mut components = Components::new(n);
+        // A body by itself, or as part of what does not move.
+        let dynamic = |i: usize| (!kinematic[i]).then_some(i);
+        let ends = |pair: [Option<usize>; 2]| match pair.map(|i| i.and_then(dynamic)) {
+            [Some(a), b] => Some((a, b)),
+            [None, Some(b)] => Some((b, None)),
+            [None, None] => None,
+        };
+        let loose = dice.chance(0.6);
+        // A tree of joints, and now and then one that closes a loop.
+        let mut pairs: Vec<[Option<usize>; 2]> = Vec::new();
+        for i in 0..n {
+            match dice.below(6) {
+                0 | 1 if i > 0 => pairs.push([Some(i), Some(dice.below(i))]),
+                2 if i > 0 => pairs.push([Some(dice.below(i)), Some(i)]),
+                3 => pairs.push([Some(i), None]),
+                4 => pairs.push([None, Some(i)]),
+                _ => {}
+            }
+        }
+        if n > 1 && dice.chance(0.15) {
+            let i = dice.below(n - 1);
+            pairs.push([Some(i), Some(i + 1)]);
+        }
+        let mut joints = 0;
+        for pair in pairs {
+            let link = ends(pair);
+            if loose && link.is_some_and(|(a, b)| components.would_close(a, b)) {
+                continue;
+            }
+            link.into_iter().for_each(|(a, b)| components.link(a, b));
+            scene.add_joint(&mut dice, joints, pair, &positions);
+            joints += 1;
+        }
+        for i in 0..n {
+            if !dice.chance(0.35) {
+                continue;
+            }
+            let other = (n > 1 && dice.chance(0.3)).then(|| (i + 1 + dice.below(n - 1)) % n);
+            let link = ends([Some(i), other]);
+            if loose && link.is_some_and(|(a, b)| components.would_close(a, b)) {
+                continue;
+            }
+            let corners = if other.is_none() && !loose && dice.chance(0.4) { 4 } else { 1 };
+            for _ in 0..corners {
+                link.into_iter().for_each(|(a, b)| components.link(a, b));
+            }
+            scene.add_touching(&mut dice, i, other, corners == 4, &positions);
+        }
+        for i in 0..n {
+            if dice.chance(0.3) {
+                let (f, t) = (dice.vector(5.0), dice.vector(2.0));
+                let op = if dice.chance(0.5) { "force" } else { "relative_force_at" };
+                scene.each_step.push(Line::new(op, i, &[f.x, f.y, f.z, t.x, t.y, t.z]));
+            }
+        }
+        scene.redundant = components.redundant();
+        scene
+    }
+
+    fn set(&mut self, op: &'static str, index: usize, numbers: &[f64]) {
+        self.setup.push(Line::new(op, index, numbers));
+    }
+
+    fn add_world(&mut self, dice: &mut Dice) {
+        let g = if dice.chance(0.7) { Vec3::new(0.0, 0.0, -9.81) } else { dice.vector(10.0) };
+        self.set("gravity", 0, &g.to_array());
+        let erp = if dice.chance(0.5) { 0.2 } else { dice.range(0.05, 0.9) };
+        self.set("erp", 0, &[erp]);
+        self.set("cfm", 0, &[[1e-10, 1e-10, 1e-8, 1e-5, 1e-3][dice.below(5)]]);
+        if dice.chance(0.5) {
+            self.set("iterations", 0, &[(1 + dice.below(50)) as f64]);
+            self.set("over_relaxation", 0, &[dice.range(0.7, 1.6)]);
+        }
+        if dice.chance(0.2) {
+            self.set("max_correcting_velocity", 0, &[dice.range(0.05, 1.0)]);
+        }
+        if dice.chance(0.2) {
+            self.set("surface_layer", 0, &[dice.range(0.0, 0.02)]);
+        }
+        if dice.chance(0.15) {
+            let d = [dice.range(0.0, 0.1), dice.range(0.0, 0.1), dice.range(0.0, 1.0), dice.range(0.0, 1.0)];
+            self.set("world_damping", 0, &d);
+        }
+        if dice.chance(0.1) {
+            self.set("world_max_angular_speed", 0, &[dice.range(0.5, 4.0)]);
+        }
+        if dice.chance(0.15) {
+            let sleep = auto_disable(dice);
+            self.set("world_auto_disable", 0, &sleep);
+        }
+        let seed = dice.below(1 << 31) as f64;
+        self.set("seed", 0, &[seed]);
+    }
+
+    /// Adds a body; true if it is kinematic.
+    fn add_body(&mut self, dice: &mut Dice, i: usize, p: Vec3) -> bool {
+        self.set("body", i, &[]);
+        let total = dice.range(0.2, 5.0);
+        let mass = match dice.below(3) {
+            0 => Mass::sphere_total(total, dice.range(0.2, 0.6)),
+            1 => Mass::cuboid_total(total, Vec3::splat(0.7) + dice.vector(0.5)),
+            _ => Mass::capsule_total(total, Axis::X, dice.range(0.1, 0.4), dice.range(0.1, 1.0)),
+        };
+        let mut mass = mass.expect("sizes are positive");
+        if dice.chance(0.3) {
+            mass = mass.rotate(dice.rotation().to_matrix()).expect("a rotation");
+        }
+        let Mat3 { rows: r } = mass.inertia;
+        let numbers = [mass.mass, r[0][0], r[1][1], r[2][2], r[0][1], r[0][2], r[1][2]];
+        self.set("mass", i, &numbers);
+        self.set("position", i, &p.to_array());
+        if dice.chance(0.8) {
+            let q = dice.rotation();
+            self.set("quaternion", i, &[q.w, q.imaginary().x, q.imaginary().y, q.imaginary().z]);
+        }
+        if dice.chance(0.7) {
+            self.set("linear_velocity", i, &dice.vector(1.0).to_array());
+            self.set("angular_velocity", i, &dice.vector(2.0).to_array());
+        }
+        if dice.chance(0.15) {
+            self.set("gravity_mode", i, &[0.0]);
+        }
+        if dice.chance(0.25) {
+            self.set("gyroscopic_mode", i, &[0.0]);
+        }
+        if dice.chance(0.25) {
+            let axis = if dice.chance(0.5) { dice.vector(1.0) } else { Vec3::ZERO };
+            self.set("finite_rotation", i, &[1.0, axis.x, axis.y, axis.z]);
+        }
+        if dice.chance(0.15) {
+            let d = [dice.range(0.0, 0.2), dice.range(0.0, 0.2), dice.range(0.0, 1.0), dice.range(0.0, 1.0)];
+            self.set("damping", i, &d);
+        }
+        if dice.chance(0.15) {
+            self.set("max_angular_speed", i, &[dice.range(0.5, 4.0)]);
+        }
+        if dice.chance(0.15) {
+            let sleep = auto_disable(dice);
+            self.set("auto_disable", i, &sleep);
+        }
+        if dice.chance(0.08) {
+            self.set("body_enabled", i, &[0.0]);
+        }
+        let kinematic = dice.chance(0.1);
+        if kinematic {
+            self.set("kinematic", i, &[]);
+        }
+        kinematic
+    }
+
+    fn add_joint(&mut self, dice: &mut Dice, j: usize, mut bodies: [Option<usize>; 2], positions: &[Vec3]) {
+        let kind = loop {
+            let kind = JOINTS[dice.below(JOINTS.len())];
+            if bodies.iter().all(Option::is_some) || !kind.needs_two_bodies() {
+                break kind;
+            }
+        };
+        let two = bodies.iter().all(Option::is_some);
+        if kind == JointType::Plane2D {
+            bodies = [bodies[0].or(bodies[1]), None];
+        }
+        self.types.push(kind);
+        let place = |body: Option<usize>| body.map_or(-1.0, |i| i as f64);
+        self.set("joint", j, &[f64::from(kind.number())]);
+        self.set("attach", j, &[place(bodies[0]), place(bodies[1])]);
+        self.set("feedback", j, &[]);
+        let centre = |body: Option<usize>| body.map_or(Vec3::ZERO, |i| positions[i]);
+        let between = if two {
+            (centre(bodies[0]) + centre(bodies[1])) * 0.5
+        } else {
+            centre(bodies[0].or(bodies[1])) + dice.vector(0.4)
+        };
+        let anchor = (between + dice.vector(0.2)).to_array();
+        let [e0, e1, e2] = dice.frame().map(Vec3::to_array);
+        // (parameter groups, whether each is linear), by type.
+        let mut groups: &[bool] = &[];
+        match kind {
+            JointType::Ball => {
+                self.set("BallAnchor", j, &anchor);
+                if dice.chance(0.2) {
+                    self.set("BallAnchor2", j, &dice.vector(0.5).to_array());
+                }
+            }
+            JointType::Hinge => {
+                self.set("HingeAnchor", j, &anchor);
+                self.set("HingeAxis", j, &e0);
+                groups = &[false];
+            }
+            JointType::Slider => {
+                self.set("SliderAxis", j, &e0);
+                groups = &[true];
+            }
+            JointType::Universal => {
+                self.set("UniversalAnchor", j, &anchor);
+                self.set("UniversalAxis1", j, &e0);
+                self.set("UniversalAxis2", j, &e1);
+                groups = &[false, false];
+            }
+            JointType::Hinge2 => {
+                self.set("Hinge2Anchor", j, &anchor);
+                self.set("Hinge2Axes", j, &[e0[0], e0[1], e0[2], e1[0], e1[1], e1[2]]);
+                groups = &[false, false];
+            }
+            JointType::Fixed => self.set("Fixed", j, &[]),
+            JointType::PR => {
+                self.set("PRAnchor", j, &anchor);
+                self.set("PRAxis1", j, &e0);
+                self.set("PRAxis2", j, &e1);
+                groups = &[true, false];
+            }
+            JointType::PU => {
+                self.set("PUAnchor", j, &anchor);
+                self.set("PUAxis1", j, &e0);
+                self.set("PUAxis2", j, &e1);
+                self.set("PUAxis3", j, &e2);
+                groups = &[false, false, true];
+            }
+            JointType::Piston => {
+                self.set("PistonAnchor", j, &anchor);
+                self.set("PistonAxis", j, &e0);
+                groups = &[true, false];
+            }
+            JointType::AMotor => groups = self.add_angular_motor(dice, j, bodies, [e0, e1, e2]),
+            JointType::LMotor => {
+                let axes = 1 + dice.below(3);
+                self.set("LMotorNumAxes", j, &[axes as f64]);
+                for (i, e) in [e0, e1, e2].iter().enumerate().take(axes) {
+                    let rel = dice.below(3) as f64;
+                    self.set("LMotorAxis", j, &[i as f64, rel, e[0], e[1], e[2]]);
+                }
+                groups = &[true, true, true][..axes];
+            }
+            JointType::Plane2D => groups = &[true, true, false],
+            JointType::DBall => {
+                self.set("DBallAnchor1", j, &anchor);
+                self.set("DBallAnchor2", j, &dice.vector(1.0).to_array());
+                if dice.chance(0.3) {
+                    self.set("DBallDistance", j, &[dice.range(0.1, 2.0)]);
+                }
+            }
+            JointType::DHinge => {
+                self.set("DHingeAxis", j, &e0);
+                self.set("DHingeAnchor1", j, &anchor);
+                self.set("DHingeAnchor2", j, &dice.vector(1.0).to_array());
+            }
+            JointType::Transmission => self.add_transmission(dice, j, bodies, positions, [e0, e1]),
+            _ => {}
+        }
+        let own =
+            [JointType::Ball, JointType::Fixed, JointType::DBall, JointType::DHinge, JointType::Transmission];
+        if own.contains(&kind) && dice.chance(0.3) {
+            self.set("param", j, &[13.0, dice.range(0.1, 0.9)]);
+            self.set("param", j, &[8.0, [1e-9, 1e-6, 1e-3][dice.below(3)]]);
+        }
+        if kind == JointType::Hinge2 && dice.chance(0.6) {
+            self.set("param", j, &[11.0, dice.range(0.1, 0.9)]);
+            self.set("param", j, &[12.0, [1e-9, 1e-5, 1e-2][dice.below(3)]]);
+        }
+        for (group, linear) in groups.iter().enumerate() {
+            self.add_limit_motor(dice, j, group, *linear);
+        }
+        if dice.chance(0.05) {
+            self.set("joint_enabled", j, &[0.0]);
+        }
+        self.add_joint_forces(dice, j, kind, bodies);
+    }
+
+    fn add_angular_motor(
+        &mut self,
+        dice: &mut Dice,
+        j: usize,
+        bodies: [Option<usize>; 2],
+        [e0, e1, e2]: [[f64; 3]; 3],
+    ) -> &'static [bool] {
+        const ANGULAR: [bool; 3] = [false; 3];
+        if dice.chance(0.4) && bodies[0].is_some() {
+            // Euler angles: the first axis in body 1, the third in body 2.
+            self.set("AMotorMode", j, &[1.0]);
+            self.set("AMotorAxis", j, &[0.0, 1.0, e0[0], e0[1], e0[2]]);
+            self.set("AMotorAxis", j, &[2.0, 2.0, e1[0], e1[1], e1[2]]);
+            return &ANGULAR;
+        }
+        let axes = 1 + dice.below(3);
+        self.set("AMotorNumAxes", j, &[axes as f64]);
+        for (i, e) in [e0, e1, e2].iter().enumerate().take(axes) {
+            let rel = dice.below(3) as f64;
+            self.set("AMotorAxis", j, &[i as f64, rel, e[0], e[1], e[2]]);
+            self.set("AMotorAngle", j, &[i as f64, dice.range(-0.5, 0.5)]);
+        }
+        &ANGULAR[..axes]
+    }
+
+    /// Gears and bevel gears. A chain drive's first contact point is decided by the sign of a rounding error in ODE.
+    fn add_transmission(
+        &mut self,
+        dice: &mut Dice,
+        j: usize,
+        bodies: [Option<usize>; 2],
+        positions: &[Vec3],
+        [e0, e1]: [[f64; 3]; 2],
+    ) {
+        let [p, q] = bodies.map(|b| b.map_or(Vec3::ZERO, |i| positions[i]));
+        if dice.chance(0.6) {
+            let d = (q - p).normalized_or(Vec3::X);
+            let axis = d.cross(Vec3::from_array(e0)).normalized_or(Vec3::Z);
+            self.set("TransmissionMode", j, &[0.0]);
+            self.set("TransmissionAxis", j, &axis.to_array());
+            self.set("TransmissionRatio", j, &[dice.range(0.5, 2.0)]);
+            self.set("TransmissionAnchor1", j, &p.to_array());
+            self.set("TransmissionAnchor2", j, &q.to_array());
+        } else {
+            let (a, b) = (Vec3::from_array(e0), Vec3::from_array(e1));
+            let apex = (p + q) * 0.5;
+            self.set("TransmissionMode", j, &[1.0]);
+            self.set("TransmissionAxis1", j, &e0);
+            self.set("TransmissionAxis2", j, &e1);
+            self.set("TransmissionAnchor1", j, &(apex + a * dice.range(0.3, 1.0)).to_array());
+            self.set("TransmissionAnchor2", j, &(apex + b * dice.range(0.3, 1.0)).to_array());
+        }
+        if dice.chance(0.3) {
+            self.set("TransmissionBacklash", j, &[dice.range(0.001, 0.02)]);
+        }
+    }
+
+    fn add_limit_motor(&mut self, dice: &mut Dice, j: usize, group: usize, linear: bool) {
+        let base = 256.0 * group as f64;
+        let param = |scene: &mut Self, n: f64, value: f64| scene.set("param", j, &[base + n, value]);
+        let reach = if linear { 0.3 } else { 0.5 };
+        let (low, high) = (dice.range(-reach, 0.1), dice.range(-0.1, reach));
+        match dice.below(5) {
+            0 => {
+                param(self, 0.0, low);
+                param(self, 1.0, high);
+            }
+            1 => param(self, 0.0, low),
+            2 => param(self, 1.0, high),
+            3 if dice.chance(0.3) => {
+                param(self, 0.0, low);
+                param(self, 1.0, low);
+            }
+            _ => {}
+        }
+        if dice.chance(0.5) {
+            param(self, 5.0, dice.range(0.1, 20.0));
+            if dice.chance(0.8) {
+                param(self, 2.0, dice.range(-3.0, 3.0));
+            }
+        }
+        if dice.chance(0.3) {
+            param(self, 6.0, dice.range(0.0, 1.0));
+        }
+        if dice.chance(0.3) {
+            param(self, 7.0, dice.range(0.0, 1.0));
+        }
+        if dice.chance(0.3) {
+            param(self, 8.0, [1e-9, 1e-4, 1e-2][dice.below(3)]);
+        }
+        if dice.chance(0.3) {
+            param(self, 9.0, dice.range(0.1, 0.9));
+            param(self, 10.0, [1e-9, 1e-5, 1e-2][dice.below(3)]);
+        }
+    }
+
+    fn add_joint_forces(&mut self, dice: &mut Dice, j: usize, kind: JointType, bodies: [Option<usize>; 2]) {
+        if !dice.chance(0.3) {
+            return;
+        }
+        let f = dice.vector(2.0).to_array();
+        let (op, count) = match kind {
+            JointType::Hinge => ("AddHingeTorque", 1),
+            JointType::Slider => ("AddSliderForce", 1),
+            JointType::Universal => ("AddUniversalTorques", 2),
+            JointType::Hinge2 => ("AddHinge2Torques", 2),
+            JointType::PR => ("AddPRTorque", 1),
+            JointType::Piston => ("AddPistonForce", 1),
+            // ODE reads an absent second body here.
+            JointType::AMotor if bodies.iter().all(Option::is_some) => ("AddAMotorTorques", 3),
+            _ => return,
+        };
+        self.each_step.push(Line::new(op, j, &f[..count]));
+    }
+
+    /// Adds contacts of a body with the plane or another body: a sphere's one, or those of a box's four corners.
+    fn add_touching(
+        &mut self,
+        dice: &mut Dice,
+        first: usize,
+        second: Option<usize>,
+        corners: bool,
+        positions: &[Vec3],
+    ) {
+        self.types.push(JointType::Contact);
+        let size = match second {
+            // Spheres that overlap a little.
+            Some(j) => {
+                let d = (positions[first] - positions[j]).length() * dice.range(0.49, 0.55);
+                [Vec3::splat(d); 2]
+            }
+            None if corners => [Vec3::splat(0.5) + dice.vector(0.3), Vec3::ZERO],
+            None => [Vec3::splat(dice.range(0.3, 0.6)), Vec3::ZERO],
+        };
+        if second.is_none() {
+            // Down to the plane.
+            let (p, sink) = (positions[first], dice.range(-0.01, 0.05));
+            self.set("position", first, &[p.x, p.y, size[0].z - sink]);
+            if corners {
+                self.set("quaternion", first, &[1.0, 0.0, 0.0, 0.0]);
+            }
+        }
+        let mut mode = 0;
+        let mut may = |bit: SurfaceMode, p: f64| {
+            if dice.chance(p) {
+                mode |= bit.0;
+            }
+        };
+        may(SurfaceMode::MU2, 0.25);
+        may(SurfaceMode::FDIR1, 0.2);
+        may(SurfaceMode::BOUNCE, 0.4);
+        may(SurfaceMode::SOFT_ERP, 0.2);
+        may(SurfaceMode::SOFT_CFM, 0.2);
+        may(SurfaceMode::MOTION1, 0.15);
+        may(SurfaceMode::MOTION2, 0.15);
+        may(SurfaceMode::MOTION_N, 0.1);
+        may(SurfaceMode::SLIP1, 0.15);
+        may(SurfaceMode::SLIP2, 0.15);
+        may(SurfaceMode::ROLLING, 0.25);
+        if dice.chance(0.7) {
+            mode |= SurfaceMode::APPROX1.0;
+        } else {
+            mode |= SurfaceMode::APPROX1_1.0 * dice.below(8) as u32;
+        }
+        let mu = |dice: &mut Dice| match dice.below(10) {
+            0 => 0.0,
+            1 => f64::INFINITY,
+            2 => -0.5,
+            _ => dice.range(0.05, 1.5),
+        };
+        let mut surface = vec![f64::from(mode), mu(dice), mu(dice)];
+        surface.extend((0..3).map(|_| if dice.chance(0.15) { 0.0 } else { dice.range(0.01, 0.2) }));
+        surface.extend([dice.range(0.0, 1.0), dice.range(0.0, 0.5), dice.range(0.1, 0.9)]);
+        surface.push([1e-8, 1e-4, 1e-2][dice.below(3)]);
+        surface.extend((0..3).map(|_| dice.range(-0.5, 0.5)));
+        surface.extend([dice.range(0.0, 0.1), dice.range(0.0, 0.1)]);
+        let [t, _, _] = dice.frame();
+        let fdir1 = if second.is_none() { Vec3::new(t.x, t.y, 0.0).normalized_or(Vec3::X) } else { t };
+        let reverse = second.is_none() && dice.chance(0.2);
+        self.touching.push(Touching { first, second, size, reverse, surface, fdir1 });
+    }
+
+    /// The contacts of this moment, from this engine's state.
+    fn contacts(&self, engine: &Engine) -> Vec<Line> {
+        let mut lines = Vec::new();
+        for t in &self.touching {
+            let body =
+                |i: usize| engine.world.body(engine.bodies[i]).expect("bodies live as long as the scene");
+            let a = body(t.first);
+            let points: Vec<(Vec3, Vec3, f64)> = match t.second {
+                Some(j) => {
+                    let (p, q) = (a.position(), body(j).position());
+                    let Some(n) = (p - q).normalized() else { continue };
+                    let depth = t.size[0].x + t.size[1].x - (p - q).length();
+                    vec![(q + n * t.size[1].x, n, depth)]
+                }
+                None if t.size[0] == Vec3::splat(t.size[0].x) => {
+                    let p = a.position();
+                    vec![(Vec3::new(p.x, p.y, 0.0), Vec3::Z, t.size[0].z - p.z)]
+                }
+                None => {
+                    let bottom = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+                    let s = t.size[0];
+                    let corner =
+                        |[x, y]: [f64; 2]| a.relative_point_position(Vec3::new(x * s.x, y * s.y, -s.z));
+                    bottom.map(corner).into_iter().map(|p| (p, Vec3::Z, -p.z)).collect()
+                }
+            };
+            for (p, n, depth) in points.into_iter().filter(|(_, _, depth)| *depth > -0.01) {
+                let first = t.first as f64;
+                let mut numbers = match t.second {
+                    Some(j) => vec![first, j as f64],
+                    None if t.reverse => vec![-1.0, first],
+                    None => vec![first, -1.0],
+                };
+                numbers.extend(&t.surface);
+                let n = if t.reverse { -n } else { n };
+                numbers.extend([p, n].into_iter().flat_map(Vec3::to_array));
+                numbers.push(depth);
+                numbers.extend(t.fdir1.to_array());
+                lines.push(Line::new("contact", 0, &numbers));
+            }
+        }
+        lines
+    }
+
+    /// Runs the scene with this crate. The script that it wrote on the way, contacts included, repeats it elsewhere.
+    pub fn run(&self, steps: usize, quick: bool) -> Result<(Vec<Line>, Vec<Record>), Error> {
+        let mut engine = Engine::default();
+        let mut script = self.setup.clone();
+        let mut records = engine.run(&script)?;
+        for _ in 0..steps {
+            let mut lines = self.each_step.clone();
+            lines.extend(self.contacts(&engine));
+            lines.push(Line::new("step", 0, &[f64::from(u8::from(quick)), self.h]));
+            lines.push(Line::new("print", 0, &[]));
+            records.extend(engine.run(&lines)?);
+            script.extend(lines);
+        }
+        Ok((script, records))
+    }
+}
+
+fn auto_disable(dice: &mut Dice) -> [f64; 6] {
+    let flag = if dice.chance(0.8) { 1.0 } else { 0.0 };
+    let steps = dice.below(6) as f64;
+    let time = if dice.chance(0.5) { 0.0 } else { dice.range(0.0, 0.1) };
+    [flag, dice.range(0.01, 1.5), dice.range(0.01, 2.5), steps, time, dice.below(5) as f64]
+}
