@@ -28,5 +28,5 @@ pub use problem::BoxedLcp;
 pub use residual::natural_residual;
 pub use sor::{
     DynamicIterations, InfTimesZero, NO_BODY, SorAcceleration, SorBody, SorExit, SorParams, SorReport,
-    SorRow, SorWorkspace, solve_sor,
+    SorRow, SorWorkspace, solve_sor, solve_sor_rows,
 };

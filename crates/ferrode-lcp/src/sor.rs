@@ -20,8 +20,9 @@
 
 mod sweep;
 
-use crate::error::LcpError;
+use crate::error::{LcpError, check_len};
 use crate::kernel::sum4;
+use std::borrow::Borrow;
 use sweep::{PackedRow, Stretch, Sweep, find_stretches};
 
 /// Stands for "no body".
@@ -69,6 +70,16 @@ impl Default for SorRow {
             findex: -1,
             body: [NO_BODY; 2],
         }
+    }
+}
+
+impl SorRow {
+    /// The same row with its two bodies in the other order.
+    #[cold]
+    fn swapped(&self) -> Self {
+        let mut j = self.j;
+        j.rotate_left(6);
+        Self { j, body: [self.body[1], self.body[0]], ..*self }
     }
 }
 
@@ -210,8 +221,23 @@ pub fn solve_sor(
     random: &mut impl FnMut(u32) -> u32,
     workspace: &mut SorWorkspace,
 ) -> Result<SorReport, LcpError> {
+    solve_sor_rows(bodies, rows.len(), rows.iter(), params, random, workspace)
+}
+
+/// [`solve_sor`] for `count` rows that are made on the way: each is asked for once, in order, and need not be kept.
+///
+/// # Errors
+/// As [`solve_sor`], and if there are fewer rows than `count`; more are not asked for.
+pub fn solve_sor_rows(
+    bodies: &[SorBody],
+    count: usize,
+    rows: impl Iterator<Item: Borrow<SorRow>>,
+    params: &SorParams,
+    random: &mut impl FnMut(u32) -> u32,
+    workspace: &mut SorWorkspace,
+) -> Result<SorReport, LcpError> {
     check_params(params)?;
-    if let Err(error) = workspace.load(bodies, rows, params) {
+    if let Err(error) = workspace.load(bodies, count, rows, params) {
         workspace.lambda.clear();
         workspace.acceleration.clear();
         return Err(error);
@@ -275,6 +301,15 @@ fn apply_inverse_mass(body: &SorBody, j: &[f64]) -> [f64; 6] {
     ]
 }
 
+/// The part of a row on one body: its Jacobian, and `B`. Zero for no body.
+#[inline(always)]
+fn part(bodies: &[SorBody], body: u32, j: &[f64]) -> ([f64; 6], [f64; 6]) {
+    match bodies.get(body as usize) {
+        Some(body) => ([j[0], j[1], j[2], j[3], j[4], j[5]], apply_inverse_mass(body, j)),
+        None => ([0.0; 6], [0.0; 6]),
+    }
+}
+
 /// The largest component by size.
 fn largest(b: &[f64; 6]) -> f64 {
     b.iter().fold(0.0, |m: f64, v| if v.abs() > m { v.abs() } else { m })
@@ -282,8 +317,14 @@ fn largest(b: &[f64; 6]) -> f64 {
 
 impl SorWorkspace {
     /// Packs the rows and sets forces and accelerations to zero.
-    fn load(&mut self, bodies: &[SorBody], rows: &[SorRow], params: &SorParams) -> Result<(), LcpError> {
-        let (m, nobody) = (rows.len(), bodies.len() as u32);
+    fn load(
+        &mut self,
+        bodies: &[SorBody],
+        m: usize,
+        rows: impl Iterator<Item: Borrow<SorRow>>,
+        params: &SorParams,
+    ) -> Result<(), LcpError> {
+        let nobody = bodies.len() as u32;
         self.lambda.clear();
         self.lambda.resize(m, 0.0);
         self.lambda.push(1.0);
@@ -299,23 +340,19 @@ impl SorWorkspace {
             self.weight.reserve(m);
             self.change.resize(bodies.len() + 1, [0.0; 2]);
         }
-        let zero = [0.0; 6];
-        for (row, r) in rows.iter().enumerate() {
+        for (row, r) in rows.take(m).enumerate() {
+            let r = r.borrow();
             check_row(row, r, m, bodies.len())?;
-            let part = |b: u32, j: &[f64]| match bodies.get(b as usize) {
-                Some(body) => (b, [j[0], j[1], j[2], j[3], j[4], j[5]], apply_inverse_mass(body, j)),
-                None => (NO_BODY, zero, zero),
+            // The loop reads the first body always and the second if there is one.
+            let swapped;
+            let r = if r.body[0] == NO_BODY {
+                swapped = r.swapped();
+                &swapped
+            } else {
+                r
             };
-            let (mut first, mut second) = (part(r.body[0], &r.j[..6]), part(r.body[1], &r.j[6..]));
-            if first.0 == NO_BODY {
-                // The loop reads the first body always and the second if there is one.
-                std::mem::swap(&mut first, &mut second);
-                if first.0 == NO_BODY {
-                    first.0 = nobody;
-                }
-            }
-            let (mut j0, b0) = (first.1, first.2);
-            let (mut j1, b1) = (second.1, second.2);
+            let (mut j0, b0) = part(bodies, r.body[0], &r.j[..6]);
+            let (mut j1, b1) = part(bodies, r.body[1], &r.j[6..]);
             let mut s = [0.0; 4];
             for l in 0..6 {
                 s[l % 2] += j0[l] * b0[l];
@@ -341,7 +378,7 @@ impl SorWorkspace {
                 cfm: r.cfm * d,
                 lo,
                 hi,
-                body: [first.0, second.0],
+                body: [r.body[0].min(nobody), r.body[1]],
                 scale,
                 j0,
                 b0,
@@ -352,6 +389,7 @@ impl SorWorkspace {
                 self.weight.push([largest(&b0), largest(&b1)]);
             }
         }
+        check_len("rows", self.packed.len(), m)?;
         self.order.extend_from_slice(&self.friction);
         find_stretches(&self.order, &self.packed, &mut self.stretches);
         Ok(())

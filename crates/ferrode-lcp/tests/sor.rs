@@ -211,6 +211,22 @@ proptest! {
     }
 }
 
+#[test]
+fn rows_may_be_made_on_the_way() {
+    let (bodies, rows) = random_scene(5, 30, true, &mut Numbers(3));
+    let params = SorParams::default();
+    let (mut a, mut b) = (SorWorkspace::new(), SorWorkspace::new());
+    solve_sor(&bodies, &rows, &params, &mut stream(1), &mut a).unwrap();
+    solve_sor_rows(&bodies, 30, rows.iter().copied(), &params, &mut stream(1), &mut b).unwrap();
+    assert_eq!(a.lambda(), b.lambda());
+    assert_eq!(a.acceleration(), b.acceleration());
+    assert_eq!(
+        solve_sor_rows(&bodies, 31, rows.iter(), &params, &mut stream(1), &mut b),
+        Err(LcpError::Size { what: "rows", need: 31, got: 30 })
+    );
+    assert!(b.lambda().is_empty() && b.acceleration().is_empty());
+}
+
 fn unit_body() -> SorBody {
     SorBody { inv_mass: 1.0, inv_inertia: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0] }
 }
