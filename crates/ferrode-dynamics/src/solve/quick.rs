@@ -4,7 +4,7 @@ use super::{FreeMotion, Solved, free_motions, right_hand_side};
 use crate::rows::NO_FRICTION_INDEX;
 use crate::step::Island;
 use crate::world::QuickSettings;
-use ferrode_lcp::sor::{InfTimesZero, NO_BODY, SorBody, SorParams, SorRow, SorWorkspace, solve_sor};
+use ferrode_lcp::sor::{InfTimesZero, NO_BODY, SorBody, SorParams, SorRow, SorWorkspace, solve_sor_rows};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Vec3};
 
@@ -13,7 +13,6 @@ use ferrode_math::{Mat3, Vec3};
 pub(crate) struct Workspace {
     free: Vec<FreeMotion>,
     bodies: Vec<SorBody>,
-    rows: Vec<SorRow>,
     sor: SorWorkspace,
     solved: bool,
 }
@@ -39,25 +38,26 @@ pub(crate) fn solve(
     work.bodies.extend(
         island.bodies.iter().map(|b| SorBody { inv_mass: b.inv_mass, inv_inertia: flatten(&b.inv_inertia) }),
     );
-    work.rows.clear();
-    for span in &island.spans {
-        for row in &island.rows[span.first..span.first + span.count.rows] {
+    let Island { rows, spans, lambda, .. } = island;
+    let free = &work.free;
+    let rows = spans.iter().flat_map(|span| {
+        rows[span.first..span.first + span.count.rows].iter().map(move |row| {
             let (a, b, c, d) = (row.linear1, row.angular1, row.linear2, row.angular2);
             let findex = match row.friction_index {
                 NO_FRICTION_INDEX => -1,
                 local => span.first as i32 + local,
             };
-            work.rows.push(SorRow {
+            SorRow {
                 j: [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z],
-                rhs: right_hand_side(row, span, fps, &work.free),
+                rhs: right_hand_side(row, span, fps, free),
                 cfm: row.cfm * fps,
                 lo: row.lo,
                 hi: row.hi,
                 findex,
                 body: span.bodies,
-            });
-        }
-    }
+            }
+        })
+    });
     const { assert!(NO_BODY == crate::arena::NIL) };
     let params = SorParams {
         iterations: settings.iterations,
@@ -69,10 +69,10 @@ pub(crate) fn solve(
         },
         dynamic: None,
     };
-    let result = solve_sor(&work.bodies, &work.rows, &params, &mut |n| random.next_below(n), &mut work.sor);
+    let result = solve_sor_rows(&work.bodies, m, rows, &params, &mut |n| random.next_below(n), &mut work.sor);
     match result {
         Ok(report) if report.finite => {
-            island.lambda.copy_from_slice(work.sor.lambda());
+            lambda.copy_from_slice(work.sor.lambda());
             work.solved = true;
             Solved::Completely
         }
