@@ -11,5 +11,7 @@ chapters! {
     Introduction = "introduction.md";
     Install = "install.md";
     Concepts = "concepts.md";
+    Typical = "typical.md";
+    ErpCfm = "erp_cfm.md";
     DataTypes = "data_types.md";
 }

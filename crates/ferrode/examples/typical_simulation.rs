@@ -1,0 +1,130 @@
+//! A typical simulation, stage by stage, in the order of the ODE manual's list: first with every part made by hand, as
+//! an ODE program does it, then the same scene in the short way.
+//!
+//! The scene: a box hangs from a hinge as the bob of a pendulum, is pushed for a moment, and knocks a ball over the
+//! ground.
+
+use ferrode::prelude::*;
+use ferrode::{CollideOptions, Contact, Geom, GeomContact, Hinge, SpaceKind};
+use ferrode::{collide, dynamics};
+
+const STEP: f64 = 0.01;
+const STEPS: usize = 300;
+const PIVOT: Vec3 = Vec3::new(0.0, 0.0, 2.0);
+const BOB_START: Vec3 = Vec3::new(-1.5, 0.0, 2.0);
+const BALL_START: Vec3 = Vec3::new(0.5, 0.0, 0.25);
+
+/// What the two versions are compared by: where bob and ball end.
+type End = (Vec3, Vec3);
+
+fn by_hand() -> Result<End, Error> {
+    // 1. Create a dynamics world.
+    let mut world = dynamics::World::new();
+    world.set_gravity(Vec3::new(0.0, 0.0, -9.81))?;
+
+    // 2. Create bodies in the dynamics world.
+    let bob = world.create_body();
+    let ball = world.create_body();
+    world.body_mut(bob)?.set_mass(&Mass::cuboid(800.0, Vec3::splat(0.4))?)?;
+    world.body_mut(ball)?.set_mass(&Mass::sphere(500.0, 0.25)?)?;
+
+    // 3. Set the state (position etc.) of all bodies.
+    world.body_mut(bob)?.set_position(BOB_START)?;
+    world.body_mut(ball)?.set_position(BALL_START)?;
+
+    // 4. Create joints in the dynamics world.
+    let hinge = world.create_joint::<Hinge>(None)?;
+
+    // 5. Attach the joints to the bodies. `None` is the static world.
+    world.attach(hinge, Some(bob), None)?;
+
+    // 6. Set the parameters of all joints: in world coordinates, with the bodies where they are now.
+    let mut pendulum = world.joint_mut::<Hinge>(hinge)?;
+    pendulum.set_anchor(PIVOT)?;
+    pendulum.set_axis(Vec3::Y)?;
+
+    // 7. Create a collision world and collision geometry objects, as necessary.
+    let mut colliders = collide::Colliders::new();
+    let space = colliders.add_space(None, SpaceKind::HASH)?;
+    colliders.add_geom(Some(space), Geom::new(Plane::new(Vec3::Z, 0.0)?))?;
+    let geoms = [
+        (colliders.add_geom(Some(space), Geom::new(Cuboid::new(Vec3::splat(0.4))?))?, bob),
+        (colliders.add_geom(Some(space), Geom::new(Sphere::new(0.25)?))?, ball),
+    ];
+    let body_of = |geom: GeomKey| geoms.iter().find(|(g, _)| *g == geom).map(|(_, body)| *body);
+
+    // 8. Create a joint group to hold the contact joints.
+    let contacts = world.create_group();
+
+    // 9. Loop.
+    for step in 0..STEPS {
+        // Apply forces to the bodies as necessary.
+        if step < 10 {
+            world.body_mut(bob)?.add_force(Vec3::new(0.0, 0.0, -100.0))?;
+        }
+
+        // Adjust the joint parameters as necessary: brake the pendulum for the last second.
+        if step == STEPS - 100 {
+            world.joint_mut::<Hinge>(hinge)?.set_motor(0.0, 50.0)?;
+        }
+
+        // Call collision detection.
+        for (geom, body) in geoms {
+            colliders.set_pose(geom, world.body(body)?.pose())?;
+        }
+        let mut found: Vec<(GeomKey, GeomKey, GeomContact)> = Vec::new();
+        colliders.collide(space, |colliders, a, b| {
+            colliders.contacts(a, b, CollideOptions::new(4), &mut found);
+        })?;
+
+        // Create a contact joint for every collision point, and put it in the contact joint group.
+        for (a, b, contact) in found {
+            let contact = Contact::at(contact.point, Surface::with_friction(0.5));
+            let joint = world.create_contact(Some(contacts), &contact)?;
+            world.attach(joint, body_of(a), body_of(b))?;
+        }
+
+        // Take a simulation step.
+        world.step(Stepper::Direct, STEP)?;
+
+        // Remove all joints in the contact joint group.
+        world.empty_group(contacts)?;
+    }
+
+    // 10. Destroy the dynamics and collision worlds: they go out of scope here.
+    Ok((world.body(bob)?.position(), world.body(ball)?.position()))
+}
+
+fn in_short() -> Result<End, Error> {
+    // A `World` holds bodies and shapes, and its step looks for contacts by itself.
+    let mut world = World::new();
+    world.stepper = Stepper::Direct;
+    world.set_gravity(Vec3::new(0.0, 0.0, -9.81))?;
+    world.set_max_contacts(4);
+    world.add_static(Plane::new(Vec3::Z, 0.0)?, Pose::IDENTITY)?;
+    let bob = BodyBuilder::new().at(BOB_START).with_shape(Cuboid::new(Vec3::splat(0.4))?, 800.0);
+    let bob = world.add_body(bob)?;
+    let ball = world.add_body(BodyBuilder::new().at(BALL_START).with_shape(Sphere::new(0.25)?, 500.0))?;
+    let hinge = world.add_hinge(Some(bob), None, PIVOT, Vec3::Y)?;
+    for step in 0..STEPS {
+        if step < 10 {
+            world.body_mut(bob)?.add_force(Vec3::new(0.0, 0.0, -100.0))?;
+        }
+        if step == STEPS - 100 {
+            world.joint_mut::<Hinge>(hinge)?.set_motor(0.0, 50.0)?;
+        }
+        world.step(STEP)?;
+    }
+    Ok((world.body(bob)?.position(), world.body(ball)?.position()))
+}
+
+fn main() -> Result<(), Error> {
+    let (bob, ball) = by_hand()?;
+    println!("The bob ends at ({:.3}, {:.3}, {:.3}),", bob.x, bob.y, bob.z);
+    println!("the ball at ({:.3}, {:.3}, {:.3}).", ball.x, ball.y, ball.z);
+    assert!(((bob - PIVOT).length() - 1.5).abs() < 0.01, "the bob still hangs from its pivot");
+    assert!(ball.x > 2.0, "the ball was knocked away");
+    assert!((ball.z - 0.25).abs() < 1e-3, "the ball rolls on the ground");
+    assert_eq!(in_short()?, (bob, ball), "both ways make the same steps");
+    Ok(())
+}
