@@ -4,7 +4,9 @@ mod bookkeeping;
 mod pairs;
 
 use crate::arena::{Arena, Key};
-use crate::space::{BroadPhase, HashSpace, Members, Proxy, ProxyId, ProxyTable, Scratch, SimpleSpace};
+use crate::space::{
+    BroadPhase, BvhSpace, HashSpace, Members, Proxy, ProxyId, ProxyTable, Scratch, SimpleSpace,
+};
 use crate::{Frame, Geom, Shape};
 use core::fmt;
 use ferrode_math::{Aabb, Pose};
@@ -51,6 +53,8 @@ pub enum SpaceKind {
         /// Largest cells measure 2 to this power.
         max_level: i32,
     },
+    /// Tree of boxes kept from step to step: [`BvhSpace`]. The fastest for many geoms; ODE has none.
+    Bvh,
 }
 
 impl SpaceKind {
@@ -92,6 +96,7 @@ impl core::error::Error for ColliderError {}
 enum Broad {
     Simple(SimpleSpace),
     Hash(HashSpace),
+    Bvh(BvhSpace),
 }
 
 impl Broad {
@@ -101,6 +106,7 @@ impl Broad {
             SpaceKind::Hash { min_level, max_level } => {
                 Self::Hash(HashSpace::with_levels(min_level, max_level))
             }
+            SpaceKind::Bvh => Self::Bvh(BvhSpace::new()),
         }
     }
 
@@ -108,6 +114,7 @@ impl Broad {
         match self {
             Self::Simple(s) => s,
             Self::Hash(s) => s,
+            Self::Bvh(s) => s,
         }
     }
 
@@ -115,6 +122,7 @@ impl Broad {
         match self {
             Self::Simple(s) => s,
             Self::Hash(s) => s,
+            Self::Bvh(s) => s,
         }
     }
 

@@ -18,6 +18,8 @@ pub(crate) struct Simplex {
 }
 
 /// What GJK finds about two cores.
+// Lives on the stack for a moment: boxing the large variant would allocate.
+#[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Gap {
     /// Further apart than was asked about.

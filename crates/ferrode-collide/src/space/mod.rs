@@ -4,10 +4,13 @@
 //! owns. It knows no shapes. Each kind reports pairs in the order in which ODE's space of that kind does, because
 //! the order of contacts decides what `Quick` computes.
 
+mod bvh;
 mod hash;
 mod proxy;
 mod simple;
+pub mod tree;
 
+pub use bvh::BvhSpace;
 pub use hash::HashSpace;
 pub use proxy::{Members, Proxy, ProxyId, ProxyTable};
 pub use simple::SimpleSpace;
@@ -36,6 +39,7 @@ pub trait BroadPhase {
 /// Memory that a search needs while it runs; kept between searches so that nothing is allocated.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
+    pub(crate) bvh: bvh::BvhScratch,
     pub(crate) hash: hash::HashScratch,
 }
 
