@@ -31,6 +31,7 @@ fn time(scene: &Scene, name: &str) {
             n,
             a: &a,
             stride,
+            first: None,
             b: &b,
             lo: &lo,
             hi: &hi,

@@ -8,6 +8,7 @@
 //! The rows of one block row are stored one after the other, each with all its blocks in order of column.
 
 use crate::kernel::sum4;
+use std::ops::Range;
 
 #[derive(Debug, Default, Clone)]
 pub(crate) struct BlockRows {
@@ -26,16 +27,20 @@ pub(crate) struct BlockRows {
 }
 
 impl BlockRows {
-    /// Takes a copy of the symmetric matrix whose lower triangle is in `a`, which the caller has checked for size.
-    pub fn assign(&mut self, a: &[f64], n: usize, stride: usize) {
+    /// Takes a copy of the symmetric matrix whose lower triangle is in `a`; `first` holds, if given, the first column of each
+    /// row that is to be read. The caller has checked sizes.
+    pub fn assign(&mut self, a: &[f64], n: usize, stride: usize, first: Option<&[u32]>) {
+        let first = |row: usize| first.map_or(0, |first| first[row] as usize);
         let blocks = n.div_ceil(4);
         self.lower.clear();
         self.lower_end.clear();
         self.start.clear();
         self.start.resize(blocks + 1, 0);
         for i in 0..blocks {
-            for j in 0..=i {
-                if i == j || holds_anything(a, n, stride, i, j) {
+            let rows = 4 * i..n.min(4 * i + 4);
+            let begin = rows.clone().map(first).min().unwrap_or(0).min(4 * i) / 4;
+            for j in begin..=i {
+                if i == j || holds_anything(a, rows.clone(), stride, first, j) {
                     self.lower.push(j as u32);
                     self.start[i + 1] += 1;
                     if i != j {
@@ -70,6 +75,9 @@ impl BlockRows {
                     for c in 0..4 {
                         if 4 * j + c > 4 * i + r {
                             break;
+                        }
+                        if 4 * j + c < first(4 * i + r) {
+                            continue;
                         }
                         let v = a[(4 * i + r) * stride + 4 * j + c];
                         self.value[4 * row_i + r * width_i + (here - row_i)][c] = v;
@@ -148,11 +156,19 @@ fn take(counter: &mut usize) -> usize {
     *counter - 1
 }
 
-/// Whether any entry of block (i, j), below the diagonal, differs from zero.
-fn holds_anything(a: &[f64], n: usize, stride: usize, i: usize, j: usize) -> bool {
+/// Whether any of the rows holds anything in the columns of block j, those before its `first` aside.
+#[inline(always)]
+fn holds_anything(
+    a: &[f64],
+    rows: Range<usize>,
+    stride: usize,
+    first: impl Fn(usize) -> usize,
+    j: usize,
+) -> bool {
     let mut bits = [0u64; 4];
-    for r in 4 * i..n.min(4 * i + 4) {
-        for (bits, v) in bits.iter_mut().zip(&a[r * stride + 4 * j..][..4]) {
+    for r in rows {
+        let skip = first(r).saturating_sub(4 * j).min(4);
+        for (bits, v) in bits[skip..].iter_mut().zip(&a[r * stride + 4 * j + skip..]) {
             *bits |= v.to_bits();
         }
     }

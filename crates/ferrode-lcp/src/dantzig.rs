@@ -253,7 +253,7 @@ impl DantzigWorkspace {
     fn load(&mut self, problem: &BoxedLcp<'_>) {
         let n = problem.n;
         let blocks = n.div_ceil(4);
-        self.matrix.assign(problem.a, n, problem.stride);
+        self.matrix.assign(problem.a, n, problem.stride, problem.first);
         self.factor.clear();
         self.factor_row.clear();
         refill(&mut self.place, blocks, [NOWHERE; 4]);

@@ -22,6 +22,9 @@ pub struct BoxedLcp<'a> {
     pub a: &'a [f64],
     /// The distance between the starts of two rows of `a`, usually [`pad(n)`](crate::dense::pad).
     pub stride: usize,
+    /// If given, for each row the first column that may differ from zero. What lies left of it is not read, so it
+    /// need not be cleared: a long chain of joints uses a narrow band of `a`.
+    pub first: Option<&'a [u32]>,
     /// The right-hand side.
     pub b: &'a [f64],
     /// Lower bounds, not above 0, possibly minus infinity. Not read for rows with a friction index.
@@ -44,12 +47,18 @@ impl BoxedLcp<'_> {
     pub fn check(&self) -> Result<(), LcpError> {
         let n = self.n;
         check_matrix("a", self.a.len(), n, n, self.stride)?;
+        check_len("first", self.first.map_or(n, <[u32]>::len), n)?;
         check_len("b", self.b.len(), n)?;
         check_len("lo", self.lo.len(), n)?;
         check_len("hi", self.hi.len(), n)?;
         check_len("findex", self.findex.len(), n)?;
         check_len("x", self.x.len(), n)?;
         check_len("w", self.w.len(), n)?;
+        for (row, &first) in self.first.unwrap_or_default().iter().enumerate().take(n) {
+            if first as usize > row {
+                return Err(LcpError::Index { what: "first", index: first as usize, end: row + 1 });
+            }
+        }
         for row in 0..n {
             check_row(row, n, self.lo[row], self.hi[row], self.findex[row])?;
         }

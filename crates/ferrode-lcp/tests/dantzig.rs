@@ -35,6 +35,7 @@ impl Problem {
                 n,
                 a: &self.m.a,
                 stride: self.m.stride,
+                first: None,
                 b: &self.b,
                 lo: &self.lo,
                 hi: &self.hi,
@@ -354,12 +355,59 @@ fn numbers_that_are_none_come_back_as_a_status() {
 }
 
 #[test]
+fn what_lies_left_of_a_rows_first_column_is_not_read() {
+    let mut numbers = Numbers(5);
+    for n in [1, 2, 5, 8, 23, 40] {
+        let mut p = Problem::random(n, true, 0, 3.0, &mut numbers);
+        let first: Vec<u32> = (0..n).map(|i| numbers.below(i + 1) as u32).collect();
+        let mut spoilt = p.m.a.clone();
+        for i in 0..n {
+            p.m.a[i * p.m.stride..][..first[i] as usize].fill(0.0);
+            spoilt[i * p.m.stride..][..first[i] as usize].fill(f64::NAN);
+        }
+        let expected = p.solve();
+        let (mut x, mut w) = (vec![0.0; n], vec![0.0; n]);
+        let mut problem = BoxedLcp {
+            n,
+            a: &spoilt,
+            stride: p.m.stride,
+            first: Some(&first),
+            b: &p.b,
+            lo: &p.lo,
+            hi: &p.hi,
+            findex: &p.findex,
+            x: &mut x,
+            w: &mut w,
+        };
+        let report = solve_dantzig(&mut problem, &mut DantzigWorkspace::new()).unwrap();
+        assert_eq!(report, expected.report);
+        assert_eq!(x, expected.x);
+        assert_eq!(w, expected.w);
+        let wrong = vec![1; n];
+        let mut problem = BoxedLcp {
+            n,
+            a: &spoilt,
+            stride: p.m.stride,
+            first: Some(&wrong),
+            b: &p.b,
+            lo: &p.lo,
+            hi: &p.hi,
+            findex: &p.findex,
+            x: &mut x,
+            w: &mut w,
+        };
+        let error = solve_dantzig(&mut problem, &mut DantzigWorkspace::new()).unwrap_err();
+        assert_eq!(error, LcpError::Index { what: "first", index: 1, end: 1 });
+    }
+}
+
+#[test]
 fn malformed_problems_are_errors() {
     let mut ws = DantzigWorkspace::new();
     let mut try_it = |a: &[f64], stride, b: &[f64], lo: &[f64], hi: &[f64], findex: &[i32]| {
         let (mut x, mut w) = ([9.0; 2], [9.0; 2]);
         let result = solve_dantzig(
-            &mut BoxedLcp { n: 2, a, stride, b, lo, hi, findex, x: &mut x, w: &mut w },
+            &mut BoxedLcp { n: 2, a, stride, first: None, b, lo, hi, findex, x: &mut x, w: &mut w },
             &mut ws,
         );
         assert_eq!(x, [9.0; 2]);

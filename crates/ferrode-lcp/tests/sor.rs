@@ -200,7 +200,7 @@ proptest! {
         let (mut x, mut w) = (vec![0.0; n], vec![0.0; n]);
         let report = solve_dantzig(
             &mut BoxedLcp {
-                n, a: &a, stride, b: &b, lo: &lo, hi: &hi, findex: &vec![-1; n], x: &mut x, w: &mut w,
+                n, a: &a, stride, first: None, b: &b, lo: &lo, hi: &hi, findex: &vec![-1; n], x: &mut x, w: &mut w,
             },
             &mut DantzigWorkspace::new(),
         ).unwrap();

@@ -15,6 +15,8 @@ pub(crate) struct Workspace {
     free: Vec<FreeMotion>,
     /// The system matrix J M⁻¹ Jᵀ + CFM/h; its lower triangle counts.
     matrix: Vec<f64>,
+    /// For each row the first column of the matrix that is used; what lies left of it holds old numbers.
+    first: Vec<u32>,
     /// M⁻¹ Jᵀ, transposed: for each row, linear and angular part for both bodies.
     inv_mass_j: Vec<[Vec3; 4]>,
     rhs: Vec<f64>,
@@ -102,6 +104,7 @@ pub(crate) fn solve(island: &mut Island, h: f64, work: &mut Workspace) -> Solved
         n: m,
         a: &work.matrix,
         stride: pad(m),
+        first: Some(&work.first),
         b: &work.rhs,
         lo: &work.lo,
         hi: &work.hi,
@@ -149,9 +152,12 @@ impl Workspace {
     fn build_matrix(&mut self, island: &Island, fps: f64) {
         let m = island.rows.len();
         let stride = pad(m);
-        self.matrix.clear();
-        self.matrix.resize(m * stride, 0.0);
+        if self.matrix.len() < m * stride {
+            // Fresh zeroed memory costs nothing until it is touched.
+            self.matrix = vec![0.0; m * stride];
+        }
         self.list_spans_by_body(island);
+        self.clear_band(island, stride);
         for body in 0..island.bodies.len() {
             if island.bodies[body].inv_mass == 0.0 {
                 continue;
@@ -176,6 +182,26 @@ impl Workspace {
         }
         for (r, row) in island.rows.iter().enumerate() {
             self.matrix[r * stride + r] += row.cfm * fps;
+        }
+    }
+
+    /// Finds how far left each row reaches, to the first joint that shares a body with its own, and clears it from there to the
+    /// diagonal.
+    fn clear_band(&mut self, island: &Island, stride: usize) {
+        self.first.clear();
+        for span in &island.spans {
+            let mut first = span.first;
+            for place in span.bodies {
+                let body = place as usize;
+                if island.bodies.get(body).is_some_and(|b| b.inv_mass != 0.0) {
+                    let (earliest, _) = self.at_body[self.starts[body]];
+                    first = first.min(island.spans[earliest as usize].first);
+                }
+            }
+            for row in span.first..span.first + span.count.rows {
+                self.first.push(first as u32);
+                self.matrix[row * stride + first..=row * stride + row].fill(0.0);
+            }
         }
     }
 
