@@ -79,7 +79,7 @@ fn sampled(half_box: Vec3, inside: impl Fn(Vec3) -> bool) -> Mass {
             sum.inertia += c * c * -dm;
         }
     }
-    sum.centre = sum.centre * (1.0 / sum.mass);
+    sum.centre *= 1.0 / sum.mass;
     sum
 }
 
