@@ -1,11 +1,12 @@
 //! Laws that a step keeps: momentum, energy to first order, independence of the frame, springs as soft constraints.
 
+use core::f64::consts::LN_2;
 use ferrode_dynamics::{
     Ball, BodyKey, DBall, Error, Fixed, Hinge, JointKey, Mass, PR, PU, Param, Piston, QuickSettings, Slider,
     Softness, Stepper, Universal, World,
 };
 use ferrode_math::random::OdeRandom;
-use ferrode_math::{Mat3, Pose, Quat, Vec3, plane_space};
+use ferrode_math::{Mat3, Pose, Quat, Vec3, plane_space, real};
 
 const STEPPERS: [Stepper; 2] = [Stepper::Direct, Stepper::Quick];
 
@@ -151,7 +152,7 @@ fn chains_keep_momentum() -> Result<(), Error> {
                 *drift += (after.1 - before.1).length() / before.1.length() / 10.0;
             }
         }
-        let orders: Vec<f64> = drifts.windows(2).map(|d| (d[0] / d[1]).log2()).collect();
+        let orders: Vec<f64> = drifts.windows(2).map(|d| real::log(d[0] / d[1]) / LN_2).collect();
         println!(
             "{stepper:?}: relative drift of angular momentum in 0.5 s {}, orders {orders:.2?}",
             scientific(&drifts)
@@ -187,7 +188,7 @@ fn pendulum_energy_converges_in_first_order() -> Result<(), Error> {
         // The rod falls by its half length, 0.5 m, from the horizontal: that is the energy of the swing.
         losses.push(-energy(&world, rod)? / (2.0 * 9.81 * 0.5));
     }
-    let orders: Vec<f64> = losses.windows(2).map(|l| (l[0] / l[1]).log2()).collect();
+    let orders: Vec<f64> = losses.windows(2).map(|l| real::log(l[0] / l[1]) / LN_2).collect();
     println!(
         "part of a pendulum's energy lost in 2 s, h = 2.5 ms and halves of it: {}, orders {orders:.2?}",
         scientific(&losses)
