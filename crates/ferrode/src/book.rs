@@ -13,5 +13,8 @@ chapters! {
     Concepts = "concepts.md";
     Typical = "typical.md";
     ErpCfm = "erp_cfm.md";
+    Friction = "friction.md";
     DataTypes = "data_types.md";
+    WorldChapter = "world.md";
+    Bodies = "bodies.md";
 }
