@@ -8,7 +8,6 @@
 //! The rows of one block row are stored one after the other, each with all its blocks in order of column.
 
 use crate::kernel::sum4;
-use std::ops::Range;
 
 #[derive(Debug, Default, Clone)]
 pub(crate) struct BlockRows {
@@ -20,7 +19,8 @@ pub(crate) struct BlockRows {
     value: Vec<[f64; 4]>,
     /// The diagonal.
     diagonal: Vec<f64>,
-    /// Scratch: the blocks of the lower triangle, row by row, and where each row's list ends.
+    /// Scratch: what the blocks of a row hold; the blocks of the lower triangle, row by row, and where each row's list ends.
+    held: Vec<u64>,
     lower: Vec<u32>,
     lower_end: Vec<usize>,
     cursor: Vec<usize>,
@@ -37,15 +37,18 @@ impl BlockRows {
         self.start.clear();
         self.start.resize(blocks + 1, 0);
         for i in 0..blocks {
-            let rows = 4 * i..n.min(4 * i + 4);
-            let begin = rows.clone().map(first).min().unwrap_or(0).min(4 * i) / 4;
-            for j in begin..=i {
-                if i == j || holds_anything(a, rows.clone(), stride, first, j) {
-                    self.lower.push(j as u32);
-                    self.start[i + 1] += 1;
-                    if i != j {
-                        self.start[j + 1] += 1;
-                    }
+            // Look at row after row, as they lie in memory.
+            self.held.clear();
+            self.held.resize(i, 0);
+            for r in 4 * i..n.min(4 * i + 4) {
+                mark_held(&a[r * stride..][..4 * i], first(r).min(4 * i), &mut self.held);
+            }
+            // The sign bit is left out: minus zero is zero. The diagonal block is always kept.
+            for j in (0..i).filter(|&j| self.held[j] << 1 != 0).chain([i]) {
+                self.lower.push(j as u32);
+                self.start[i + 1] += 1;
+                if i != j {
+                    self.start[j + 1] += 1;
                 }
             }
             self.lower_end.push(self.lower.len());
@@ -156,22 +159,14 @@ fn take(counter: &mut usize) -> usize {
     *counter - 1
 }
 
-/// Whether any of the rows holds anything in the columns of block j, those before its `first` aside.
-#[inline(always)]
-fn holds_anything(
-    a: &[f64],
-    rows: Range<usize>,
-    stride: usize,
-    first: impl Fn(usize) -> usize,
-    j: usize,
-) -> bool {
-    let mut bits = [0u64; 4];
-    for r in rows {
-        let skip = first(r).saturating_sub(4 * j).min(4);
-        for (bits, v) in bits[skip..].iter_mut().zip(&a[r * stride + 4 * j + skip..]) {
-            *bits |= v.to_bits();
-        }
+/// Gathers the bits of the numbers of a row from column `first` on, block by block. The row ends with a whole block.
+fn mark_held(row: &[f64], first: usize, held: &mut [u64]) {
+    let whole = first.div_ceil(4);
+    for v in &row[first..4 * whole] {
+        held[whole - 1] |= v.to_bits();
     }
-    // The sign bit is left out: minus zero is zero.
-    ((bits[0] | bits[1]) | (bits[2] | bits[3])) << 1 != 0
+    for (held, block) in held[whole..].iter_mut().zip(row[4 * whole..].as_chunks::<4>().0) {
+        let b = block.map(f64::to_bits);
+        *held |= (b[0] | b[1]) | (b[2] | b[3]);
+    }
 }
