@@ -64,7 +64,8 @@ fn masses_are_those_of_libode() {
     }
     let Some(theirs) = oracle::run(&script) else { return };
     assert_eq!(theirs.abort, None);
-    let theirs = theirs.records;
+    // libode also grumbles about some masses; the numbers are compared all the same.
+    let theirs: Vec<_> = theirs.records.into_iter().filter(|record| record.what != "message").collect();
     assert_eq!(theirs.len(), ours.len());
     let mut worst: f64 = 0.0;
     for ((line, mass), record) in script.iter().zip(&ours).zip(&theirs) {
