@@ -76,13 +76,19 @@ impl DerefMut for World {
 }
 
 impl World {
-    /// An empty world with ODE's defaults: no gravity, ERP 0.2, CFM 1e-10.
+    /// An empty world with ODE's defaults: no gravity, ERP 0.2, CFM 1e-10; its geoms in a tree of boxes.
     pub fn new() -> Self {
+        Self::with_space(SpaceKind::Bvh)
+    }
+
+    /// As [`World::new`], with a space of another kind: it decides the order in which pairs are found, and so the order of
+    /// contacts.
+    pub fn with_space(kind: SpaceKind) -> Self {
         let mut dynamics = ferrode_dynamics::World::new();
         let contact_group = dynamics.create_group();
         let mut colliders = Colliders::new();
         // The only error of `add_space` is a parent that does not exist.
-        let space = colliders.add_space(None, SpaceKind::HASH).expect("a space without parent can be added");
+        let space = colliders.add_space(None, kind).expect("a space without parent can be added");
         Self {
             dynamics,
             colliders,
