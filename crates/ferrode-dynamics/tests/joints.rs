@@ -208,6 +208,18 @@ fn an_unlimited_motor_leaves_a_stop_and_rests_at_it() {
     }
 }
 
+/// ODE takes an infinite stop on the wrong side for an infinite error.
+#[test]
+fn an_infinite_stop_is_none() {
+    for (low, high) in [(f64::INFINITY, f64::INFINITY), (f64::NEG_INFINITY, f64::NEG_INFINITY)] {
+        let (mut world, body, joint) = slider();
+        world.joint_mut::<Slider>(joint).unwrap().set_limits(low, high).unwrap();
+        world.body_mut(body).unwrap().set_linear_velocity(Vec3::X).unwrap();
+        assert!(world.step(Stepper::Direct, H).unwrap().quarantined.is_empty());
+        near(world.body(body).unwrap().position().x, H, 1e-15);
+    }
+}
+
 /// Angles wrap: a low stop of −4 is never reached, but the high one acts.
 #[test]
 fn a_stop_beyond_a_half_turn_does_not_switch_the_other_off() {

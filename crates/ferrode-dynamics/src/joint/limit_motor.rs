@@ -226,11 +226,12 @@ impl LimitMotor {
         }
     }
 
-    /// Tests a value against the stops, whatever these are; `None` for stops that don't count.
+    /// Tests a value against the stops, whatever these are; `None` for stops that don't count. An infinite stop is none
+    /// (ODE would take one on the wrong side for an infinite error).
     pub(crate) fn test(&mut self, x: Option<f64>) {
         (self.state, self.excess) = match x {
-            Some(x) if x <= self.low => (LimitState::AtLow, x - self.low),
-            Some(x) if x >= self.high => (LimitState::AtHigh, x - self.high),
+            Some(x) if x <= self.low && self.low.is_finite() => (LimitState::AtLow, x - self.low),
+            Some(x) if x >= self.high && self.high.is_finite() => (LimitState::AtHigh, x - self.high),
             _ => (LimitState::Free, 0.0),
         };
     }
@@ -255,11 +256,20 @@ impl LimitMotor {
         usize::from(self.is_active())
     }
 
-    /// If the axis has a row in this step, fills `out.rows[*at]` and advances `at`. `slot` is the row's stable number within the joint.
+    /// Whether a motor of this velocity drives away from the stop that the axis is at.
+    fn drives_away(&self) -> bool {
+        match self.state {
+            LimitState::Free => false,
+            LimitState::AtLow => self.velocity > 0.0,
+            LimitState::AtHigh => self.velocity < 0.0,
+        }
+    }
+
+    /// If the axis has a row in this step, fills `out.rows[*at]` and advances `at`. `slot` is the row's stable number
+    /// within the joint.
     ///
-    /// A motor at a stop adds its force to `out.forces`: it pushes in its direction of motion with all its might, or
-    /// towards the stop if its velocity is 0; driving away from the stop the fudge factor scales it. An unlimited motor
-    /// would make that force infinite: driving away it acts as a motor row instead, and towards the stop not at all.
+    /// A motor at a stop adds its force to `out.forces` instead. An unlimited one would make that infinite: driving away
+    /// from the stop it stays a motor row, and towards the stop it adds nothing.
     pub(crate) fn write_row(
         &self,
         ends: &Ends<'_>,
@@ -277,50 +287,67 @@ impl LimitMotor {
         row.slot = slot;
         axis.write_jacobian(ends, row);
 
-        let locked = self.low == self.high;
-        let powered = self.max_force > 0.0 && !(locked && self.state != LimitState::Free);
-        let away = match self.state {
-            LimitState::Free => false,
-            LimitState::AtLow => self.velocity > 0.0,
-            LimitState::AtHigh => self.velocity < 0.0,
-        };
+        let at_stop = self.state != LimitState::Free;
+        let locked = at_stop && self.low == self.high;
         let unlimited = self.max_force == f64::INFINITY;
-        if self.state == LimitState::Free || (powered && unlimited && away) {
-            row.kind = RowKind::Motor;
-            row.c = self.velocity;
-            row.velocity_target = self.velocity;
-            row.cfm = self.cfm;
-            (row.lo, row.hi) = (-self.max_force, self.max_force);
+        if !at_stop || (unlimited && !locked && self.drives_away()) {
+            self.write_motor(row);
             return;
         }
+        self.write_stop(ctx, row);
+        if locked {
+            return;
+        }
+        if self.bounce > 0.0 {
+            self.write_bounce(axis.speed(ends, row), row);
+        }
+        if self.max_force > 0.0 && !unlimited {
+            let force = self.force_at_stop();
+            out.forces[0].force += row.linear1 * force;
+            out.forces[0].torque += row.angular1 * force;
+            out.forces[1].force += row.linear2 * force;
+            out.forces[1].torque += row.angular2 * force;
+        }
+    }
 
+    fn write_motor(&self, row: &mut Row) {
+        row.kind = RowKind::Motor;
+        row.c = self.velocity;
+        row.velocity_target = self.velocity;
+        row.cfm = self.cfm;
+        (row.lo, row.hi) = (-self.max_force, self.max_force);
+    }
+
+    /// One-sided, unless the stops are equal.
+    fn write_stop(&self, ctx: &StepContext, row: &mut Row) {
         row.kind = RowKind::Limit;
         row.correct(ctx.fps * self.stop_erp, -self.excess);
         row.cfm = self.stop_cfm;
-        if !locked {
-            let low = self.state == LimitState::AtLow;
-            (row.lo, row.hi) = if low { (0.0, f64::INFINITY) } else { (f64::NEG_INFINITY, 0.0) };
-            if self.bounce > 0.0 {
-                let u = axis.speed(ends, row);
-                if (low && u < 0.0) || (!low && u > 0.0) {
-                    row.restitution_target = -self.bounce * u;
-                    row.c = if low {
-                        row.c.max(row.restitution_target)
-                    } else {
-                        row.c.min(row.restitution_target)
-                    };
-                }
+        if self.low != self.high {
+            match self.state {
+                LimitState::AtLow => row.lo = 0.0,
+                _ => row.hi = 0.0,
             }
         }
-        if powered && !unlimited {
-            let negative = self.velocity > 0.0 || (self.velocity == 0.0 && self.state == LimitState::AtHigh);
-            let force = if negative { -self.max_force } else { self.max_force };
-            let force = if away { self.fudge * force } else { force };
-            out.forces[0].force += row.linear1 * -force;
-            out.forces[0].torque += row.angular1 * -force;
-            out.forces[1].force += row.linear2 * -force;
-            out.forces[1].torque += row.angular2 * -force;
+    }
+
+    /// Asks for the speed away from the stop that returns the part `bounce` of the speed `u`, if that is towards it.
+    fn write_bounce(&self, u: f64, row: &mut Row) {
+        let back = -self.bounce * u;
+        match self.state {
+            LimitState::AtLow if u < 0.0 => row.c = row.c.max(back),
+            LimitState::AtHigh if u > 0.0 => row.c = row.c.min(back),
+            _ => return,
         }
+        row.restitution_target = back;
+    }
+
+    /// The motor's force along the axis at a stop: all its might in its direction of motion, or towards the stop if its
+    /// velocity is 0. The fudge factor scales it when it drives away.
+    fn force_at_stop(&self) -> f64 {
+        let forward = self.velocity > 0.0 || (self.velocity == 0.0 && self.state == LimitState::AtHigh);
+        let force = if forward { self.max_force } else { -self.max_force };
+        if self.drives_away() { self.fudge * force } else { force }
     }
 }
 
