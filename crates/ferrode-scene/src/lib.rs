@@ -33,6 +33,7 @@
 //! and values with their places; `sdf` and `urdf` make a `draft` of it, in which frames and links are still names;
 //! `frames` resolves the names and poses; `merge` joins what fixed joints of a URDF hold together.
 
+pub mod build;
 mod context;
 pub mod description;
 mod draft;
@@ -48,6 +49,7 @@ mod xml;
 
 use std::path::{Path, PathBuf};
 
+pub use build::{BuildOptions, NamedJoint, NamedLink, NamedWorld, build};
 pub use description::Scene;
 pub use error::{Result, SceneError, Warning, WarningKind};
 pub use source::{Origin, Source};

@@ -114,6 +114,28 @@ impl Scene {
             .is_some_and(|model| model.is_static)
     }
 
+    /// Moves all models that are not static, with what is in them. Models that are joined to the world move with
+    /// their joints.
+    pub fn translate_moving(&mut self, by: Vec3) {
+        let moves: Vec<bool> = self.models.iter().map(|model| !model.is_static).collect();
+        for (model, _) in self.models.iter_mut().zip(&moves).filter(|(_, moves)| **moves) {
+            model.pose.position += by;
+        }
+        for link in self.links.iter_mut().filter(|link| moves[link.model.0]) {
+            link.pose.position += by;
+        }
+        for joint in self.joints.iter_mut().filter(|joint| joint.model.is_none_or(|model| moves[model.0])) {
+            joint.pose.position += by;
+        }
+        for frame in &mut self.frames {
+            if let Body::Link(LinkId(link)) = frame.attached_to
+                && moves[self.links[link].model.0]
+            {
+                frame.pose.position += by;
+            }
+        }
+    }
+
     /// The masses of all links that can move, added up, kg.
     pub fn moving_mass(&self) -> f64 {
         let moving = self.links.iter().enumerate().filter(|&(index, _)| !self.is_static(LinkId(index)));
@@ -123,14 +145,18 @@ impl Scene {
 
 /// The item of this scoped name, or else the only one whose scoped name ends in `::name`.
 pub(crate) fn find<'a, T>(items: &'a [T], name: &str, name_of: impl Fn(&T) -> &str) -> Option<&'a T> {
-    if let Some(exact) = items.iter().find(|item| name_of(item) == name) {
+    find_index(items, name, name_of).map(|index| &items[index])
+}
+
+/// The place of what [`find`] finds.
+pub(crate) fn find_index<T>(items: &[T], name: &str, name_of: impl Fn(&T) -> &str) -> Option<usize> {
+    if let Some(exact) = items.iter().position(|item| name_of(item) == name) {
         return Some(exact);
     }
-    let mut ending = items
-        .iter()
-        .filter(|item| name_of(item).strip_suffix(name).is_some_and(|scope| scope.ends_with("::")));
-    let first = ending.next()?;
-    ending.next().is_none().then_some(first)
+    let ends_so = |item: &T| name_of(item).strip_suffix(name).is_some_and(|scope| scope.ends_with("::"));
+    let first = items.iter().position(ends_so)?;
+    let alone = !items[first + 1..].iter().any(ends_so);
+    alone.then_some(first)
 }
 
 #[cfg(test)]
