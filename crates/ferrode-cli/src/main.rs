@@ -1,4 +1,42 @@
 #![forbid(unsafe_code)]
-//! The `ferrode` command.
+//! The `ferrode` command: simulates SDF worlds and URDF robots, checks them, and compares steppers on them.
 
-fn main() {}
+mod args;
+mod check;
+mod compare;
+mod exit;
+mod hold;
+mod json;
+mod progress;
+mod record;
+mod run;
+mod simulation;
+mod stats;
+mod summary;
+mod version;
+
+use exit::{Exit, Failure};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let task = match args::parse(std::env::args_os()) {
+        Ok(task) => task,
+        Err(error) => {
+            // To standard output for help and version, to standard error for mistakes; nobody to tell if that fails.
+            let _ = error.print();
+            return if error.use_stderr() { ExitCode::from(Exit::Usage as u8) } else { ExitCode::SUCCESS };
+        }
+    };
+    let result = match &task {
+        args::Task::Run(args) => run::run(args),
+        args::Task::Check(args) => check::check(args),
+        args::Task::Compare(args) => compare::compare(args),
+    };
+    let exit = result.unwrap_or_else(|Failure { exit, message }| {
+        if !message.is_empty() {
+            eprintln!("{message}");
+        }
+        exit
+    });
+    ExitCode::from(exit as u8)
+}
