@@ -17,4 +17,22 @@ chapters! {
     DataTypes = "data_types.md";
     WorldChapter = "world.md";
     Bodies = "bodies.md";
+    Joints = "joints.md";
+    JointBall = "joints/ball.md";
+    JointHinge = "joints/hinge.md";
+    JointSlider = "joints/slider.md";
+    JointUniversal = "joints/universal.md";
+    JointHinge2 = "joints/hinge2.md";
+    JointPr = "joints/pr.md";
+    JointPu = "joints/pu.md";
+    JointPiston = "joints/piston.md";
+    JointFixed = "joints/fixed.md";
+    JointAmotor = "joints/amotor.md";
+    JointLmotor = "joints/lmotor.md";
+    JointPlane2d = "joints/plane2d.md";
+    JointContact = "joints/contact.md";
+    JointDball = "joints/dball.md";
+    JointDhinge = "joints/dhinge.md";
+    JointTransmission = "joints/transmission.md";
+    JointNull = "joints/null.md";
 }

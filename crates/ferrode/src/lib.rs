@@ -32,10 +32,10 @@ pub use ferrode_collide::{
     SpaceKey, SpaceKind, Sphere,
 };
 pub use ferrode_dynamics::{
-    AMotor, AutoDisable, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping, FiniteRotation, Fixed,
-    GroupKey, Hinge, Hinge2, JointError, JointFeedback, JointKey, JointType, LMotor, LimitMotor, Mass, Null,
-    PR, PU, Param, Piston, Plane2D, QuickSettings, Slider, Softness, StepReport, Stepper, Surface,
-    SurfaceMode, Transmission, Universal,
+    AMotor, AMotorMode, AutoDisable, AxisFrame, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping,
+    FiniteRotation, Fixed, GroupKey, Hinge, Hinge2, JointError, JointFeedback, JointKey, JointType, LMotor,
+    LimitMotor, LimitState, Mass, Null, PR, PU, Param, Piston, Plane2D, QuickSettings, Slider, Softness,
+    StepReport, Stepper, Surface, SurfaceMode, Transmission, TransmissionMode, Universal,
 };
 pub use ferrode_math::{Aabb, ContactPoint, Mat3, Pose, Quat, Vec3};
 pub use fixed_step::FixedStep;
