@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{geom, recorded};
+use common::Record;
 use ferrode_collide::{Colliders, Cuboid, Frame, Geom, GeomKey, Item, SpaceKind};
 use ferrode_math::{Pose, Quat, Vec3};
 use serde_json::Value;
@@ -28,14 +28,15 @@ fn pairs(v: &Value) -> Vec<(u64, u64)> {
 #[test]
 fn pairs_come_as_in_libode() {
     let mut compared = 0;
-    for scene in recorded("spaces.json")["broadphase"].as_array().unwrap() {
+    let record = Record::open(&["spaces.json"]);
+    for scene in record.list("broadphase") {
         for (name, want) in scene["reports"].as_object().unwrap() {
             let Some(kind) = kind(name.trim_end_matches("_vs_box")) else { continue };
             let mut colliders = Colliders::new();
             let space = colliders.add_space(None, kind).unwrap();
             let mut numbers: BTreeMap<GeomKey, u64> = BTreeMap::new();
             for (i, g) in scene["geoms"].as_array().unwrap().iter().enumerate() {
-                let (shape, frame) = geom(&g["g"]).unwrap();
+                let (shape, frame) = record.geom(&g["g"]).unwrap();
                 let bits = |key: &str| g[key].as_u64().unwrap();
                 let geom = Geom::new(shape).at(pose(&frame)).with_bits(bits("category"), bits("collide"));
                 let key = colliders.add_geom(Some(space), geom).unwrap();

@@ -17,7 +17,7 @@ pub(crate) struct Touch {
 }
 
 /// The contact of two convex bodies; `None` if they are apart.
-pub(crate) fn touch(a: &Body, b: &Body) -> Option<Touch> {
+pub(crate) fn touch(a: &Body<'_>, b: &Body<'_>) -> Option<Touch> {
     let margin = a.margin + b.margin;
     let simplex = match gjk(a, b, margin) {
         Gap::Far => return None,
@@ -47,7 +47,7 @@ pub(crate) fn touch(a: &Body, b: &Body) -> Option<Touch> {
 }
 
 /// A direction across two cores whose difference is flat, on the side of the first one's centre.
-fn flat_normal(a: &Body, b: &Body) -> Vec3 {
+fn flat_normal(a: &Body<'_>, b: &Body<'_>) -> Vec3 {
     let between = a.center - b.center;
     let across = a.axis(2).cross(b.axis(2));
     let n = across

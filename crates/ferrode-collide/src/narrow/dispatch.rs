@@ -32,64 +32,82 @@ macro_rules! swap {
 }
 
 const NONE: Option<Collider> = None;
-const KINDS: usize = 6;
+/// Convex bodies without a file of their own for the pair.
+const BODIES: Option<Collider> = Some(convex_bodies);
+const KINDS: usize = 7;
 
 /// Row: the first shape; column: the second.
 #[rustfmt::skip]
 static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     // Sphere
     [
-        pair!(Sphere, Sphere, sphere_sphere),
-        pair!(Sphere, Cuboid, sphere_cuboid),
-        swap!(Sphere, Capsule, capsule_sphere),
-        swap!(Sphere, Cylinder, cylinder_sphere),
-        pair!(Sphere, Plane, sphere_plane),
-        swap!(Sphere, Ray, ray_sphere),
+        pair!(Sphere, Sphere, sphere_sphere),               // Sphere
+        pair!(Sphere, Cuboid, sphere_cuboid),               // Cuboid
+        swap!(Sphere, Capsule, capsule_sphere),             // Capsule
+        swap!(Sphere, Cylinder, cylinder_sphere),           // Cylinder
+        pair!(Sphere, Plane, sphere_plane),                 // Plane
+        swap!(Sphere, Ray, ray_sphere),                     // Ray
+        BODIES,                                             // Convex
     ],
     // Cuboid
     [
-        swap!(Cuboid, Sphere, sphere_cuboid),
-        pair!(Cuboid, Cuboid, cuboid_cuboid),
-        swap!(Cuboid, Capsule, capsule_cuboid),
-        swap!(Cuboid, Cylinder, cylinder_cuboid),
-        pair!(Cuboid, Plane, cuboid_plane),
-        swap!(Cuboid, Ray, ray_cuboid),
+        swap!(Cuboid, Sphere, sphere_cuboid),               // Sphere
+        pair!(Cuboid, Cuboid, cuboid_cuboid),               // Cuboid
+        swap!(Cuboid, Capsule, capsule_cuboid),             // Capsule
+        swap!(Cuboid, Cylinder, cylinder_cuboid),           // Cylinder
+        pair!(Cuboid, Plane, cuboid_plane),                 // Plane
+        swap!(Cuboid, Ray, ray_cuboid),                     // Ray
+        BODIES,                                             // Convex
     ],
     // Capsule
     [
-        pair!(Capsule, Sphere, capsule_sphere),
-        pair!(Capsule, Cuboid, capsule_cuboid),
-        pair!(Capsule, Capsule, capsule_capsule),
-        pair!(Capsule, Cylinder, capsule_cylinder),
-        pair!(Capsule, Plane, capsule_plane),
-        swap!(Capsule, Ray, ray_capsule),
+        pair!(Capsule, Sphere, capsule_sphere),             // Sphere
+        pair!(Capsule, Cuboid, capsule_cuboid),             // Cuboid
+        pair!(Capsule, Capsule, capsule_capsule),           // Capsule
+        pair!(Capsule, Cylinder, capsule_cylinder),         // Cylinder
+        pair!(Capsule, Plane, capsule_plane),               // Plane
+        swap!(Capsule, Ray, ray_capsule),                   // Ray
+        BODIES,                                             // Convex
     ],
     // Cylinder
     [
-        pair!(Cylinder, Sphere, cylinder_sphere),
-        pair!(Cylinder, Cuboid, cylinder_cuboid),
-        swap!(Cylinder, Capsule, capsule_cylinder),
-        pair!(Cylinder, Cylinder, cylinder_cylinder),
-        pair!(Cylinder, Plane, cylinder_plane),
-        swap!(Cylinder, Ray, ray_cylinder),
+        pair!(Cylinder, Sphere, cylinder_sphere),           // Sphere
+        pair!(Cylinder, Cuboid, cylinder_cuboid),           // Cuboid
+        swap!(Cylinder, Capsule, capsule_cylinder),         // Capsule
+        pair!(Cylinder, Cylinder, cylinder_cylinder),       // Cylinder
+        pair!(Cylinder, Plane, cylinder_plane),             // Plane
+        swap!(Cylinder, Ray, ray_cylinder),                 // Ray
+        BODIES,                                             // Convex
     ],
     // Plane
     [
-        swap!(Plane, Sphere, sphere_plane),
-        swap!(Plane, Cuboid, cuboid_plane),
-        swap!(Plane, Capsule, capsule_plane),
-        swap!(Plane, Cylinder, cylinder_plane),
-        NONE,
-        swap!(Plane, Ray, ray_plane),
+        swap!(Plane, Sphere, sphere_plane),                 // Sphere
+        swap!(Plane, Cuboid, cuboid_plane),                 // Cuboid
+        swap!(Plane, Capsule, capsule_plane),               // Capsule
+        swap!(Plane, Cylinder, cylinder_plane),             // Cylinder
+        NONE,                                               // Plane
+        swap!(Plane, Ray, ray_plane),                       // Ray
+        swap!(Plane, Convex, convex_plane),                 // Convex
     ],
     // Ray
     [
-        pair!(Ray, Sphere, ray_sphere),
-        pair!(Ray, Cuboid, ray_cuboid),
-        pair!(Ray, Capsule, ray_capsule),
-        pair!(Ray, Cylinder, ray_cylinder),
-        pair!(Ray, Plane, ray_plane),
-        NONE,
+        pair!(Ray, Sphere, ray_sphere),                     // Sphere
+        pair!(Ray, Cuboid, ray_cuboid),                     // Cuboid
+        pair!(Ray, Capsule, ray_capsule),                   // Capsule
+        pair!(Ray, Cylinder, ray_cylinder),                 // Cylinder
+        pair!(Ray, Plane, ray_plane),                       // Plane
+        NONE,                                               // Ray
+        pair!(Ray, Convex, ray_convex),                     // Convex
+    ],
+    // Convex
+    [
+        BODIES,                                             // Sphere
+        BODIES,                                             // Cuboid
+        BODIES,                                             // Capsule
+        BODIES,                                             // Cylinder
+        pair!(Convex, Plane, convex_plane),                 // Plane
+        swap!(Convex, Ray, ray_convex),                     // Ray
+        BODIES,                                             // Convex
     ],
 ];
 

@@ -37,14 +37,14 @@ pub fn distance(a: (&Shape, &Pose), b: (&Shape, &Pose)) -> Option<Distance> {
     }
 }
 
-fn plane_distance(plane: &Plane, body: &Body) -> Distance {
+fn plane_distance(plane: &Plane, body: &Body<'_>) -> Distance {
     let n = plane.normal();
     let a = body.support(-n) - n * body.margin;
     let depth = plane.depth(a);
     Distance { distance: -depth, a, b: a + n * depth, normal: n }
 }
 
-fn body_distance(a: &Body, b: &Body, origin: Vec3) -> Distance {
+fn body_distance(a: &Body<'_>, b: &Body<'_>, origin: Vec3) -> Distance {
     if let Some(t) = touch(a, b) {
         return Distance { distance: -t.depth, a: t.a + origin, b: t.b + origin, normal: t.normal };
     }

@@ -107,7 +107,7 @@ impl Polytope {
 }
 
 /// Completes a simplex to a tetrahedron; `None` if the difference is flat.
-fn tetrahedron(a: &Body, b: &Body, simplex: &Simplex, scale: f64) -> Option<[Vertex; 4]> {
+fn tetrahedron(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex, scale: f64) -> Option<[Vertex; 4]> {
     let small = 1e-12 * scale;
     let mut v = simplex.vertices;
     let mut n = simplex.count;
@@ -133,7 +133,7 @@ fn tetrahedron(a: &Body, b: &Body, simplex: &Simplex, scale: f64) -> Option<[Ver
 }
 
 /// The least overlap of two cores that share a point. `None` if their difference is flat, and so the overlap nil.
-pub(crate) fn epa(a: &Body, b: &Body, simplex: &Simplex) -> Option<Depth> {
+pub(crate) fn epa(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex) -> Option<Depth> {
     let scale = a.reach() + b.reach();
     let corners = tetrahedron(a, b, simplex, scale)?;
     let mut p = Polytope {

@@ -163,7 +163,7 @@ pub(super) fn nearest_of_triangle(a: Vec3, b: Vec3, c: Vec3) -> ([usize; 3], [f6
 
 /// The nearest points of two cores, or a simplex about the origin if they overlap. Cores known to be further apart
 /// than `limit` are not looked at closely.
-pub(crate) fn gjk(a: &Body, b: &Body, limit: f64) -> Gap {
+pub(crate) fn gjk(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
     let scale = a.reach() + b.reach() + (a.center - b.center).length();
     let touching = 1e-26 * scale * scale;
     let mut d = a.center - b.center;

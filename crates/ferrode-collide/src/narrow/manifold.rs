@@ -6,7 +6,9 @@ use crate::Contacts;
 use ferrode_math::Vec3;
 
 /// Most corners of a clipped feature.
-const CORNERS: usize = 24;
+const CORNERS: usize = 40;
+/// Most corners of a feature; a face with more is thinned out.
+const FEATURE: usize = 16;
 /// Most contacts of a pair.
 const MOST: usize = 8;
 /// Cosine of normal and face beyond which the face is what touches.
@@ -17,7 +19,7 @@ const PARALLEL: f64 = 1e-3;
 /// The face, edge or corner of a body that faces a direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Feature {
-    pub points: [Vec3; 8],
+    pub points: [Vec3; FEATURE],
     pub count: usize,
     /// Outward unit normal of a face; of an edge or corner there is none.
     pub normal: Option<Vec3>,
@@ -25,7 +27,7 @@ pub(crate) struct Feature {
 
 impl Feature {
     fn corner(p: Vec3) -> Self {
-        Self { points: [p; 8], count: 1, normal: None }
+        Self { points: [p; FEATURE], count: 1, normal: None }
     }
 
     fn edge(p: Vec3, q: Vec3) -> Self {
@@ -36,7 +38,7 @@ impl Feature {
     }
 
     /// The feature of `body` that faces the unit vector `d`.
-    pub fn of(body: &Body, d: Vec3) -> Self {
+    pub fn of(body: &Body<'_>, d: Vec3) -> Self {
         let u = body.axis(2);
         let shell = d * body.margin;
         match body.core {
@@ -72,6 +74,32 @@ impl Feature {
                     p[j] = sj * sign * h[j];
                     p[k] = sk * h[k];
                     f.points[m] = body.place(p);
+                }
+                f
+            }
+            Core::Hull(hull, _) => {
+                let l = body.rotation.transpose_mul(d);
+                let i = hull.face_along(l);
+                let corners = hull.face(i);
+                let mut f = Self::corner(Vec3::ZERO);
+                f.count = corners.len().min(FEATURE);
+                f.normal = Some(body.rotation * hull.face_plane(i).0);
+                for (k, p) in f.points[..f.count].iter_mut().enumerate() {
+                    *p = body.place(hull.points()[corners[k * corners.len() / f.count] as usize]);
+                }
+                f
+            }
+            Core::Triangle(p) => {
+                let mut f = Self::corner(Vec3::ZERO);
+                f.count = 3;
+                for (k, p) in p.iter().enumerate() {
+                    f.points[k] = body.center + *p;
+                }
+                // Seen from the other side a triangle turns the other way.
+                f.normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+                if f.normal.is_some_and(|n| n.dot(d) < 0.0) {
+                    f.points.swap(1, 2);
+                    f.normal = f.normal.map(|n| -n);
                 }
                 f
             }
@@ -139,7 +167,7 @@ impl Found {
 /// contact with its own depth, midway between the two surfaces. Parallel edges touch at both ends of their common
 /// stretch. Everything else touches at one point. If there are more than wanted, the deepest stays, and those furthest
 /// from the ones that stay.
-pub(crate) fn add_manifold(a: &Body, b: &Body, touch: &Touch, origin: Vec3, out: &mut Contacts<'_>) {
+pub(crate) fn add_manifold(a: &Body<'_>, b: &Body<'_>, touch: &Touch, origin: Vec3, out: &mut Contacts<'_>) {
     let n = touch.normal;
     let single = ((touch.a + touch.b) * 0.5, touch.depth);
     let mut found = Found { list: [(Vec3::ZERO, 0.0); CORNERS], count: 0 };

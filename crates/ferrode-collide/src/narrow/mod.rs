@@ -4,6 +4,7 @@
 //! conventions for position and depth are kept pair by pair, and libode's order of contacts, because the order of
 //! rows decides what `Quick` computes.
 
+mod bodies;
 mod capsule_capsule;
 mod capsule_cuboid;
 mod capsule_cylinder;
@@ -11,6 +12,7 @@ mod capsule_plane;
 mod capsule_sphere;
 mod closest;
 mod convex;
+mod convex_plane;
 mod cuboid_cuboid;
 mod cuboid_plane;
 mod cylinder_cuboid;
@@ -23,6 +25,7 @@ mod epa;
 mod gjk;
 mod manifold;
 mod ray_capsule;
+mod ray_convex;
 mod ray_cuboid;
 mod ray_cylinder;
 mod ray_plane;
@@ -33,12 +36,14 @@ mod sphere_plane;
 mod sphere_sphere;
 mod support;
 
+pub use bodies::convex_bodies;
 pub use capsule_capsule::capsule_capsule;
 pub use capsule_cuboid::capsule_cuboid;
 pub use capsule_cylinder::capsule_cylinder;
 pub use capsule_plane::capsule_plane;
 pub use capsule_sphere::capsule_sphere;
 pub use closest::{closest_line_points, closest_segment_cuboid, closest_segment_points};
+pub use convex_plane::convex_plane;
 pub use cuboid_cuboid::{BoxBox, cuboid_cuboid, cuboids_touch};
 pub use cuboid_plane::cuboid_plane;
 pub use cylinder_cuboid::cylinder_cuboid;
@@ -48,6 +53,7 @@ pub use cylinder_sphere::cylinder_sphere;
 pub use dispatch::{collide, collide_frames, collides};
 pub use distance::{Distance, distance};
 pub use ray_capsule::ray_capsule;
+pub use ray_convex::ray_convex;
 pub use ray_cuboid::ray_cuboid;
 pub use ray_cylinder::ray_cylinder;
 pub use ray_plane::ray_plane;

@@ -1,11 +1,11 @@
 //! Convex bodies by their support functions, for the algorithms that need no more.
 
-use crate::{Capsule, Cuboid, Cylinder, Frame, Shape, Sphere};
+use crate::{Capsule, Convex, Cuboid, Cylinder, Frame, Shape, Sphere};
 use ferrode_math::{Mat3, Vec3};
 
 /// The part of a convex body that is left when a margin of constant width is taken off, in its own coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Core {
+pub(crate) enum Core<'a> {
     /// The origin.
     Point,
     /// ±half on the z axis.
@@ -14,26 +14,31 @@ pub(crate) enum Core {
     Cuboid(Vec3),
     /// Radius and half length.
     Cylinder(f64, f64),
+    /// A polyhedron and the distance of its furthest corner.
+    Hull(&'a Convex, f64),
+    /// Corners relative to the body's centre, in the pair's coordinates.
+    Triangle([Vec3; 3]),
 }
 
 /// A convex body: all points within `margin` of a core at a place. Rounded shapes have exact contacts that way.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body {
-    pub core: Core,
+pub(crate) struct Body<'a> {
+    pub core: Core<'a>,
     pub rotation: Mat3,
     /// Relative to the pair's origin, so that a pair far from the world's loses nothing.
     pub center: Vec3,
     pub margin: f64,
 }
 
-impl Body {
+impl<'a> Body<'a> {
     /// The body of a convex shape of finite size.
-    pub fn of(shape: &Shape, frame: &Frame, origin: Vec3) -> Option<Self> {
+    pub fn of(shape: &'a Shape, frame: &Frame, origin: Vec3) -> Option<Self> {
         Some(match shape {
             Shape::Sphere(s) => Self::sphere(s, frame, origin),
             Shape::Cuboid(s) => Self::cuboid(s, frame, origin),
             Shape::Capsule(s) => Self::capsule(s, frame, origin),
             Shape::Cylinder(s) => Self::cylinder(s, frame, origin),
+            Shape::Convex(s) => Self::new(Core::Hull(s, s.reach()), 0.0, frame, origin),
             Shape::Plane(_) | Shape::Ray(_) => return None,
         })
     }
@@ -54,7 +59,14 @@ impl Body {
         Self::new(Core::Cylinder(s.radius(), 0.5 * s.length()), 0.0, frame, origin)
     }
 
-    fn new(core: Core, margin: f64, frame: &Frame, origin: Vec3) -> Self {
+    /// A triangle with the given corners in the pair's coordinates.
+    pub fn triangle(corners: [Vec3; 3]) -> Self {
+        let center = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
+        let core = Core::Triangle(corners.map(|p| p - center));
+        Self { core, rotation: Mat3::IDENTITY, center, margin: 0.0 }
+    }
+
+    fn new(core: Core<'a>, margin: f64, frame: &Frame, origin: Vec3) -> Self {
         Self { core, rotation: frame.rotation, center: frame.position - origin, margin }
     }
 
@@ -72,6 +84,18 @@ impl Body {
                 let scale = if flat > 0.0 { radius / flat } else { 0.0 };
                 Vec3::new(l.x * scale, l.y * scale, sign(l.z, half))
             }
+            Core::Hull(hull, _) => hull.support(l),
+            Core::Triangle(corners) => {
+                let [a, b, c] = corners.map(|p| p.dot(d));
+                let i = if a >= b && a >= c {
+                    0
+                } else if b >= c {
+                    1
+                } else {
+                    2
+                };
+                return self.center + corners[i];
+            }
         };
         self.center + self.rotation * p
     }
@@ -83,6 +107,8 @@ impl Body {
             Core::Segment(half) => half,
             Core::Cuboid(h) => h.length(),
             Core::Cylinder(radius, half) => (radius * radius + half * half).sqrt(),
+            Core::Hull(_, reach) => reach,
+            Core::Triangle(p) => p.iter().map(|p| p.length()).fold(0.0, f64::max),
         };
         core + self.margin
     }
@@ -108,7 +134,7 @@ pub(crate) struct Vertex {
 
 /// The point of a − b furthest along `d`.
 #[inline]
-pub(crate) fn difference(a: &Body, b: &Body, d: Vec3) -> Vertex {
+pub(crate) fn difference(a: &Body<'_>, b: &Body<'_>, d: Vec3) -> Vertex {
     let (a, b) = (a.support(d), b.support(-d));
     Vertex { w: a - b, a, b }
 }

@@ -1,13 +1,16 @@
 //! What geoms are made of.
 
 mod capsule;
+mod convex;
 mod cuboid;
 mod cylinder;
+mod hull;
 mod plane;
 mod ray;
 mod sphere;
 
 pub use capsule::Capsule;
+pub use convex::Convex;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use plane::Plane;
@@ -36,6 +39,8 @@ pub enum Shape {
     Plane(Plane),
     /// A ray of finite length.
     Ray(Ray),
+    /// A convex polyhedron.
+    Convex(Convex),
 }
 
 /// The kind of a shape: its row and column in the pair matrix.
@@ -54,6 +59,8 @@ pub enum ShapeKind {
     Plane,
     /// [`Ray`].
     Ray,
+    /// [`Convex`].
+    Convex,
 }
 
 impl Shape {
@@ -66,6 +73,7 @@ impl Shape {
             Self::Cylinder(_) => ShapeKind::Cylinder,
             Self::Plane(_) => ShapeKind::Plane,
             Self::Ray(_) => ShapeKind::Ray,
+            Self::Convex(_) => ShapeKind::Convex,
         }
     }
 
@@ -83,6 +91,7 @@ impl Shape {
             Self::Cylinder(s) => s.aabb(frame),
             Self::Plane(s) => s.aabb(),
             Self::Ray(s) => s.aabb(frame),
+            Self::Convex(s) => s.aabb(frame),
         }
     }
 
@@ -95,6 +104,7 @@ impl Shape {
             Self::Cylinder(s) => s.volume(),
             Self::Plane(_) => f64::INFINITY,
             Self::Ray(_) => 0.0,
+            Self::Convex(s) => s.volume(),
         }
     }
 
@@ -111,7 +121,7 @@ impl Shape {
             Self::Cuboid(s) => s.sides().to_array().contains(&0.0),
             Self::Capsule(s) => s.radius() == 0.0,
             Self::Cylinder(s) => s.radius() == 0.0 || s.length() == 0.0,
-            Self::Plane(_) | Self::Ray(_) => false,
+            Self::Plane(_) | Self::Ray(_) | Self::Convex(_) => false,
         }
     }
 }
@@ -127,7 +137,7 @@ pub struct ShapeError {
 
 impl fmt::Display for ShapeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} must be a finite number, not negative: {}", self.what, self.value)
+        write!(f, "{} cannot be {}", self.what, self.value)
     }
 }
 

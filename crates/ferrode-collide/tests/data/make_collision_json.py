@@ -1,4 +1,4 @@
-"""Makes collision.json and spaces.json, the recorded cases that the tests replay, from the full record of libode 0.16.2.
+"""Makes the recorded cases that the tests replay, from the full record of libode 0.16.2.
 
 usage: make_collision_json.py collision_golden.json
 
@@ -8,21 +8,24 @@ special lists as they are. The tests replay the full record instead if FERRODE_S
 import json
 import sys
 
-CLASSES = ["sphere", "box", "capsule", "cylinder", "plane", "ray"]
+PRIMITIVES = ["sphere", "box", "capsule", "cylinder", "plane", "ray"]
 KEEP = {"generic": 5, "aligned": 3, "resting": 3, "concentric": 1, "unimportant": 1}
 
 full = json.load(open(sys.argv[1]))
-seen = {}
-cases = []
-for case in full["cases"]:
-    classes = (case["a"]["class"], case["b"]["class"])
-    if not set(classes) <= set(CLASSES):
-        continue
-    # Most generic cases should touch.
-    key = classes + (case["kind"], case["n"] > 0)
-    seen[key] = seen.get(key, 0) + 1
-    if seen[key] <= (KEEP[case["kind"]] if case["n"] > 0 else 1):
-        cases.append(case)
+
+
+def cases(classes, one_of, share):
+    """Some cases of pairs of `classes` of which one is in `one_of`; a `share` of the usual number."""
+    seen = {}
+    for case in full["cases"]:
+        pair = (case["a"]["class"], case["b"]["class"])
+        if not set(pair) <= set(classes) or not set(pair) & set(one_of):
+            continue
+        # Most cases should touch.
+        key = pair + (case["kind"], case["n"] > 0)
+        seen[key] = seen.get(key, 0) + 1
+        if seen[key] <= (max(1, round(share * KEEP[case["kind"]])) if case["n"] > 0 else 1):
+            yield case
 
 
 def write(path, lists):
@@ -35,5 +38,13 @@ def write(path, lists):
         out.write("}\n")
 
 
-write("collision.json", {"cases": cases, **{key: full[key] for key in ("box_box", "closest_line_segment_points")}})
+write(
+    "collision.json",
+    {
+        "cases": list(cases(PRIMITIVES, PRIMITIVES, 1)),
+        "box_box": full["box_box"],
+        "closest_line_segment_points": full["closest_line_segment_points"],
+    },
+)
+write("convex.json", {"hulls": full["hulls"], "cases": list(cases(PRIMITIVES + ["convex"], ["convex"], 0.6))})
 write("spaces.json", {"broadphase": full["broadphase"]})

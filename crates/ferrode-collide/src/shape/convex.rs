@@ -1,0 +1,238 @@
+use super::{LARGEST, ShapeError, hull};
+use crate::Frame;
+use ferrode_math::{Aabb, Vec3};
+use std::sync::Arc;
+
+/// A convex polyhedron. Copies share their data.
+#[derive(Clone, Debug)]
+pub struct Convex {
+    data: Arc<Polyhedron>,
+}
+
+#[derive(Debug)]
+struct Polyhedron {
+    points: Vec<Vec3>,
+    faces: Vec<Face>,
+    /// Corners of all faces, one after another.
+    corners: Vec<u32>,
+    volume: f64,
+}
+
+/// A face of a polyhedron.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    normal: Vec3,
+    d: f64,
+    start: u32,
+    count: u32,
+}
+
+impl PartialEq for Convex {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.data, &other.data)
+            || (self.data.points == other.data.points && self.data.corners == other.data.corners)
+    }
+}
+
+impl Convex {
+    /// The convex hull of a cloud of points, which must not be flat. Points inside are left out; triangles in one plane
+    /// become one face.
+    pub fn from_points(points: &[Vec3]) -> Result<Self, ShapeError> {
+        check_points(points)?;
+        let hull = hull::hull(points)?;
+        Self::from_faces(&hull.points, &hull.faces)
+    }
+
+    /// The polyhedron with the given corners and faces; each face lists its corners counter-clockwise as seen from
+    /// outside (ODE's `dCreateConvex`). That it is convex is up to the caller.
+    pub fn from_faces<F: AsRef<[u32]>>(points: &[Vec3], faces: &[F]) -> Result<Self, ShapeError> {
+        check_points(points)?;
+        let mut data = Polyhedron {
+            points: points.to_vec(),
+            faces: Vec::with_capacity(faces.len()),
+            corners: Vec::new(),
+            volume: 0.0,
+        };
+        let center = points.iter().fold(Vec3::ZERO, |sum, &p| sum + p) / points.len() as f64;
+        for face in faces {
+            let face = face.as_ref();
+            if face.len() < 3 {
+                return Err(ShapeError {
+                    what: "number of corners of a convex face",
+                    value: face.len() as f64,
+                });
+            }
+            if let Some(bad) = face.iter().find(|&&i| i as usize >= points.len()) {
+                return Err(ShapeError { what: "corner number of a convex face", value: f64::from(*bad) });
+            }
+            // Newell's sum: right for faces with corners in line, and for slightly warped ones.
+            let at = |k: usize| points[face[k % face.len()] as usize] - center;
+            let area = (0..face.len()).fold(Vec3::ZERO, |sum, k| sum + at(k).cross(at(k + 1)));
+            let Some(normal) = area.normalized() else {
+                return Err(ShapeError { what: "area of a convex face", value: area.length() });
+            };
+            let d = (0..face.len()).map(|k| normal.dot(at(k))).sum::<f64>() / face.len() as f64;
+            data.volume += area.length() * d / 6.0;
+            data.faces.push(Face {
+                normal,
+                d: d + normal.dot(center),
+                start: data.corners.len() as u32,
+                count: face.len() as u32,
+            });
+            data.corners.extend_from_slice(face);
+        }
+        if faces.len() < 4 {
+            return Err(ShapeError {
+                what: "number of faces of a convex polyhedron",
+                value: faces.len() as f64,
+            });
+        }
+        Ok(Self { data: Arc::new(data) })
+    }
+
+    /// The corners.
+    pub fn points(&self) -> &[Vec3] {
+        &self.data.points
+    }
+
+    /// Number of faces.
+    pub fn face_count(&self) -> usize {
+        self.data.faces.len()
+    }
+
+    /// The corner numbers of face `i`, counter-clockwise as seen from outside.
+    pub fn face(&self, i: usize) -> &[u32] {
+        let f = &self.data.faces[i];
+        &self.data.corners[f.start as usize..(f.start + f.count) as usize]
+    }
+
+    /// Outward unit normal of face `i`, and its distance from the origin.
+    #[inline]
+    pub fn face_plane(&self, i: usize) -> (Vec3, f64) {
+        let f = &self.data.faces[i];
+        (f.normal, f.d)
+    }
+
+    /// Volume in cubic metres.
+    pub fn volume(&self) -> f64 {
+        self.data.volume
+    }
+
+    /// The corner furthest along `d`.
+    #[inline]
+    pub fn support(&self, d: Vec3) -> Vec3 {
+        let mut best = self.data.points[0];
+        let mut most = d.dot(best);
+        for &p in &self.data.points[1..] {
+            let along = d.dot(p);
+            if along > most {
+                (best, most) = (p, along);
+            }
+        }
+        best
+    }
+
+    /// The face whose normal is most along `d`.
+    pub fn face_along(&self, d: Vec3) -> usize {
+        let mut best = 0;
+        let mut most = f64::NEG_INFINITY;
+        for (i, f) in self.data.faces.iter().enumerate() {
+            let along = f.normal.dot(d);
+            if along > most {
+                (best, most) = (i, along);
+            }
+        }
+        best
+    }
+
+    /// Distance of the furthest corner from the local origin.
+    pub fn reach(&self) -> f64 {
+        self.data.points.iter().map(|p| p.length()).fold(0.0, f64::max)
+    }
+
+    /// The world box around the polyhedron.
+    pub fn aabb(&self, frame: &Frame) -> Aabb {
+        let mut aabb = Aabb::EMPTY;
+        for &p in &self.data.points {
+            let w = frame.point_to_world(p);
+            aabb = aabb.union(&Aabb::new(w, w));
+        }
+        aabb
+    }
+}
+
+fn check_points(points: &[Vec3]) -> Result<(), ShapeError> {
+    if points.len() < 4 {
+        return Err(ShapeError {
+            what: "number of points of a convex polyhedron",
+            value: points.len() as f64,
+        });
+    }
+    match points.iter().find(|p| !(p.abs_max() <= LARGEST)) {
+        Some(p) => Err(ShapeError { what: "coordinate of a convex polyhedron's point", value: p.abs_max() }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ferrode_math::random::OdeRandom;
+
+    #[test]
+    fn hull_of_a_cube_with_points_inside_and_on_it() {
+        let mut points = Vec::new();
+        for i in 0..27u8 {
+            let c = |k: u8| f64::from(i / k % 3) - 1.0;
+            points.push(Vec3::new(c(1), c(3), c(9)));
+        }
+        let hull = Convex::from_points(&points).unwrap();
+        assert_eq!((hull.points().len(), hull.face_count()), (8, 6));
+        assert!((hull.volume() - 8.0).abs() < 1e-12);
+        for i in 0..6 {
+            let (n, d) = hull.face_plane(i);
+            assert_eq!(hull.face(i).len(), 4);
+            assert!((d - 1.0).abs() < 1e-12 && (n.abs_max() - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn hulls_hold_all_their_points() {
+        let mut random = OdeRandom::new(3);
+        let mut number = || f64::from(random.next_u32()) / 4294967296.0 - 0.5;
+        for n in [4, 5, 8, 20, 100, 500] {
+            for round in 0..5 {
+                let points: Vec<_> = (0..n)
+                    .map(|_| {
+                        let p = Vec3::new(number(), number(), number());
+                        // Every second cloud on a sphere, where all points are corners.
+                        if round % 2 == 0 { p } else { p.normalized().unwrap_or(Vec3::X) }
+                    })
+                    .collect();
+                let hull = Convex::from_points(&points).unwrap();
+                for p in &points {
+                    for i in 0..hull.face_count() {
+                        let (n, d) = hull.face_plane(i);
+                        assert!(n.dot(*p) - d < 1e-9, "{n:?} {d} {p:?}");
+                    }
+                }
+                if round % 2 == 1 {
+                    assert_eq!(hull.points().len(), n);
+                }
+                // Closed: each edge is met once from either side (Euler).
+                let edges: usize = (0..hull.face_count()).map(|i| hull.face(i).len()).sum::<usize>() / 2;
+                assert_eq!(hull.points().len() + hull.face_count(), edges + 2);
+            }
+        }
+    }
+
+    #[test]
+    fn flat_and_bad_clouds_are_errors() {
+        let flat = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1.0, 0.0), Vec3::new(0.3, 0.2, 0.0)];
+        assert!(Convex::from_points(&flat).is_err());
+        assert!(Convex::from_points(&[Vec3::ZERO; 6]).is_err());
+        assert!(Convex::from_points(&flat[..3]).is_err());
+        assert!(Convex::from_points(&[Vec3::X * f64::NAN; 4]).is_err());
+        assert!(Convex::from_faces(&flat, &[[0, 1, 9], [0, 1, 2], [0, 1, 3], [0, 2, 3]]).is_err());
+    }
+}
