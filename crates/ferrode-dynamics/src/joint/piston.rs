@@ -64,8 +64,8 @@ impl JointModel for Piston {
 
     fn write_rows(&mut self, ends: &Ends<'_>, ctx: &StepContext, out: &mut JointRows<'_>) {
         let a = self.axis(ends);
-        let [align @ .., _, _] = &mut out.rows[..4] else { return };
-        write_alignment_rows(a, ends.b().rotation * self.axes[1], ctx.k(), ends.two(), align, 0);
+        let b = ends.b().rotation * self.axes[1];
+        write_alignment_rows(a, b, ctx.k(), ends.two(), &mut out.rows[..2], 0);
 
         // In reverse ODE negates this arm, but not the anchor that it is compared with.
         let arm = (self.anchors.world2(ends) - ends.a().position) * ends.sign();
