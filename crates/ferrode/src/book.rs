@@ -35,4 +35,5 @@ chapters! {
     JointDhinge = "joints/dhinge.md";
     JointTransmission = "joints/transmission.md";
     JointNull = "joints/null.md";
+    Migrating = "migrating.md";
 }
