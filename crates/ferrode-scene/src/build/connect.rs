@@ -12,10 +12,12 @@
 //! | fixed | fixed | child, parent | |
 //! | universal | universal | child, parent | 1 (in the parent) → 2, 2 (in the child) → 1 |
 //! | universal, child static | universal | parent, world | 1 → 1, 2 → 2 |
+//! | screw | piston, with a coupling | child, parent | 1 (the angle) → 2 |
+//! | gearbox | none, but a coupling | | |
 //! | revolute2 | hinge-2 | parent, child | 1 → 1, 2 → 2; motor of 2 reversed |
 
 use ferrode::{
-    BodyKey, Error, Hinge, Hinge2, JointKey, LimitMotor, Slider, Softness, Universal, Vec3, World,
+    BodyKey, Error, Hinge, Hinge2, JointKey, LimitMotor, Piston, Slider, Softness, Universal, Vec3, World,
 };
 
 use super::bodies::BuiltLink;
@@ -49,6 +51,7 @@ pub(super) enum Form {
     Fixed,
     Universal,
     Hinge2,
+    Screw,
 }
 
 /// The stops and motor behind an axis of the file, for whoever drives it:
@@ -121,6 +124,9 @@ fn form_of(
         JointKind::Prismatic => return Some(Form::Slider),
         JointKind::Ball => return Some(Form::Ball),
         JointKind::Fixed => return Some(Form::Fixed),
+        JointKind::Screw { .. } => return Some(Form::Screw),
+        // It holds nothing: other joints hold its bodies. What it couples is seen to elsewhere.
+        JointKind::Gearbox { .. } => return None,
         JointKind::Universal if perpendicular => return Some(Form::Universal),
         // Two axes that are not perpendicular: the hinge-2 keeps the angle between them.
         JointKind::Universal | JointKind::Revolute2 if both_move => return Some(Form::Hinge2),
@@ -161,6 +167,14 @@ fn connect(
         Form::Fixed => world.add_fixed(first, second)?,
         Form::Universal if flipped => world.add_universal(first, second, anchor, -axis, -axis2)?,
         Form::Universal => world.add_universal(first, second, anchor, axis2, axis)?,
+        Form::Screw => {
+            let key = world.create_joint::<Piston>(None)?;
+            world.attach(key, first, second)?;
+            let mut piston = world.joint_mut::<Piston>(key)?;
+            piston.set_anchor(anchor)?;
+            piston.set_axis(axis * sign)?;
+            key
+        }
         Form::Hinge2 => {
             let key = world.create_joint::<Hinge2>(None)?;
             world.attach(key, parent, child)?;
@@ -196,19 +210,13 @@ fn set_limits(
             notes.not_supported(joint.origin.clone(), message);
             continue;
         }
-        let (lower, upper) = within_a_turn(joint, built.form, limits, notes);
-        let softness = match joint.advanced.stop {
-            Some(stop) => Some(Softness { erp: stop.erp, cfm: stop.cfm }),
-            None => softness(limits.stiffness, limits.dissipation, step),
-        };
+        // Stops that an angle within half a turn does not reach are an angular motor's: see `passive`.
+        if built.has_wide_stops(limits) {
+            continue;
+        }
+        let softness = stop_softness(joint, limits, step);
         built.with_motor(world, motor.group, |limit_motor| {
-            limit_motor.set_limits(lower, upper)?;
-            if let Some(softness) = softness {
-                limit_motor.set_stop_softness(softness)?;
-            }
-            if let Some(bounce) = joint.advanced.bounce {
-                limit_motor.set_bounce(bounce)?;
-            }
+            set_stops(limit_motor, joint, limits, softness)?;
             if let Some(fudge) = joint.advanced.fudge_factor {
                 limit_motor.set_fudge_factor(fudge.min(1.0))?;
             }
@@ -218,22 +226,29 @@ fn set_limits(
     Ok(())
 }
 
-/// An angle is measured within half a turn either way, so stops beyond have no effect.
-fn within_a_turn(joint: &Joint, form: Form, limits: &Limits, notes: &mut Notes) -> (f64, f64) {
-    let (mut lower, mut upper) = (limits.lower, limits.upper);
-    if form == Form::Slider {
-        return (lower, upper);
+/// Sets where an axis ends and how softly.
+pub(super) fn set_stops(
+    limit_motor: &mut LimitMotor,
+    joint: &Joint,
+    limits: &Limits,
+    softness: Option<Softness>,
+) -> std::result::Result<(), ferrode::dynamics::Error> {
+    limit_motor.set_limits(limits.lower, limits.upper)?;
+    if let Some(softness) = softness {
+        limit_motor.set_stop_softness(softness)?;
     }
-    let pi = std::f64::consts::PI;
-    for (end, beyond) in [(&mut lower, limits.lower < -pi), (&mut upper, limits.upper > pi)] {
-        if beyond && end.is_finite() {
-            let message =
-                format!("joint `{}`: the limit {end} is beyond half a turn and has no effect", joint.name);
-            notes.not_supported(joint.origin.clone(), message);
-            *end = if *end < 0.0 { f64::NEG_INFINITY } else { f64::INFINITY };
-        }
+    if let Some(bounce) = joint.advanced.bounce {
+        limit_motor.set_bounce(bounce)?;
     }
-    (lower, upper)
+    Ok(())
+}
+
+/// The softness of a joint's stops: ODE's own terms if the file has them, or else their spring and damper.
+pub(super) fn stop_softness(joint: &Joint, limits: &Limits, step: f64) -> Option<Softness> {
+    match joint.advanced.stop {
+        Some(stop) => Some(Softness { erp: stop.erp, cfm: stop.cfm }),
+        None => softness(limits.stiffness, limits.dissipation, step),
+    }
 }
 
 /// `<velocity>` and `<max_force>` drive the only axis; of a revolute2 the second, which is the wheel's.
@@ -254,6 +269,7 @@ impl BuiltJoint {
     pub(super) fn motor(&self, axis: usize) -> Option<AxisMotor> {
         let (group, sign) = match (self.form, axis) {
             (Form::Hinge | Form::Slider, 0) => (1, 1.0),
+            (Form::Screw, 0) => (2, 1.0),
             (Form::Universal, 0 | 1) => (if self.flipped() { axis + 1 } else { 2 - axis }, 1.0),
             (Form::Hinge2, 0) => (1, 1.0),
             (Form::Hinge2, 1) => (2, -1.0),
@@ -274,6 +290,7 @@ impl BuiltJoint {
             Form::Slider => change(world.joint_mut::<Slider>(self.key)?.limit_motor_of_mut(group)?)?,
             Form::Universal => change(world.joint_mut::<Universal>(self.key)?.limit_motor_of_mut(group)?)?,
             Form::Hinge2 => change(world.joint_mut::<Hinge2>(self.key)?.limit_motor_of_mut(group)?)?,
+            Form::Screw => change(world.joint_mut::<Piston>(self.key)?.limit_motor_of_mut(group)?)?,
             Form::Ball | Form::Fixed => {}
         }
         Ok(())
@@ -285,6 +302,7 @@ impl BuiltJoint {
         Some(match (self.form, axis) {
             (Form::Hinge, 0) => world.joint::<Hinge>(self.key).ok()?.axis() * sign,
             (Form::Slider, 0) => world.joint::<Slider>(self.key).ok()?.axis() * sign,
+            (Form::Screw, 0) => world.joint::<Piston>(self.key).ok()?.axis() * sign,
             (Form::Universal, 0 | 1) => {
                 let universal = world.joint::<Universal>(self.key).ok()?;
                 match self.motor(axis)?.group {
@@ -303,6 +321,7 @@ impl BuiltJoint {
         Some(match (self.form, axis) {
             (Form::Hinge, 0) => world.joint::<Hinge>(self.key).ok()?.angle(),
             (Form::Slider, 0) => world.joint::<Slider>(self.key).ok()?.position().ok()?,
+            (Form::Screw, 0) => world.joint::<Piston>(self.key).ok()?.angle(),
             (Form::Universal, 0 | 1) => {
                 let universal = world.joint::<Universal>(self.key).ok()?;
                 universal.angles()[self.motor(axis)?.group - 1]
@@ -313,8 +332,16 @@ impl BuiltJoint {
         })
     }
 
+    /// Whether an axis has stops beyond half a turn, which the joint's own angle does not reach. A screw turns too often
+    /// for any other.
+    pub(super) fn has_wide_stops(&self, limits: &Limits) -> bool {
+        let wide =
+            |end: f64| end.is_finite() && (end.abs() > std::f64::consts::PI || self.form == Form::Screw);
+        self.is_angular() && (wide(limits.lower) || wide(limits.upper))
+    }
+
     pub(super) fn is_angular(&self) -> bool {
-        matches!(self.form, Form::Hinge | Form::Universal | Form::Hinge2)
+        matches!(self.form, Form::Hinge | Form::Universal | Form::Hinge2 | Form::Screw)
     }
 
     /// The position of an axis, turns included.
@@ -344,7 +371,7 @@ impl BuiltJoint {
 
 impl Turns {
     /// The angle nearest to where it was last seen, of those that `raw` may mean.
-    fn at(&self, raw: f64) -> f64 {
+    pub(super) fn at(&self, raw: f64) -> f64 {
         let turn = 2.0 * std::f64::consts::PI;
         let mut count = self.count;
         if raw - self.angle > 0.5 * turn {
@@ -354,19 +381,26 @@ impl Turns {
         }
         raw + count * turn
     }
+
+    /// Takes note of the angle.
+    pub(super) fn follow(&mut self, raw: f64) {
+        let turn = 2.0 * std::f64::consts::PI;
+        *self = Self { count: ((self.at(raw) - raw) / turn).round(), angle: raw };
+    }
 }
 
 impl NamedWorld {
     /// Counts the turns that angles have made.
     pub(super) fn follow_turns(&mut self) {
-        let turn = 2.0 * std::f64::consts::PI;
         for joint in self.joints.iter_mut().flatten().filter(|joint| joint.is_angular()) {
             for axis in 0..2 {
                 if let Some(raw) = joint.raw_position(&self.world, axis) {
-                    let count = ((joint.turns[axis].at(raw) - raw) / turn).round();
-                    joint.turns[axis] = Turns { count, angle: raw };
+                    joint.turns[axis].follow(raw);
                 }
             }
+        }
+        for coupling in &mut self.couplings {
+            coupling.follow_turns(&self.world);
         }
     }
 

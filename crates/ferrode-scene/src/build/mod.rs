@@ -40,9 +40,15 @@
 //! ERP and CFM of the same row. Coulomb friction is a motor that aims at rest with its force limited to the friction.
 //! Angular axes get these rows from an angular motor beside the joint, so that the joint's own motor stays free for
 //! whoever drives it; a prismatic axis needs its own motor for them.
+//!
+//! # Screws, gearboxes and joints that mimic others
+//! Their axes are coupled by forces before each step, which act on all bodies concerned, so that a leader feels its
+//! follower. The coupling is as exact as the forces are foreseeable: a step late for those that the step's own
+//! constraints bring.
 
 mod bodies;
 mod connect;
+mod coupling;
 mod named;
 mod passive;
 mod shapes;
@@ -80,7 +86,7 @@ pub struct NamedWorld {
     links: Vec<bodies::BuiltLink>,
     joints: Vec<Option<connect::BuiltJoint>>,
     passive: Vec<passive::Passive>,
-    followers: Vec<passive::Follower>,
+    couplings: Vec<coupling::Coupling>,
 }
 
 /// The softness of a world that the file leaves hard: ODE's default CFM in double precision. Without any, redundant
@@ -108,9 +114,10 @@ pub fn build(scene: &Scene, options: &BuildOptions) -> Result<NamedWorld> {
         links,
         joints,
         passive: Vec::new(),
-        followers: Vec::new(),
+        couplings: Vec::new(),
     };
     passive::add(&mut built, &mut notes)?;
+    coupling::add(&mut built, &mut notes);
     built.warnings = notes.into_warnings();
     if options.strict
         && let Some(first) = built.warnings.first()
@@ -172,7 +179,7 @@ impl NamedWorld {
         self.step_size
     }
 
-    /// One step of [`NamedWorld::step_size`] seconds: springs and followers are brought up to date, and the world is
+    /// One step of [`NamedWorld::step_size`] seconds: springs and couplings are brought up to date, and the world is
     /// stepped.
     ///
     /// # Errors

@@ -1,10 +1,10 @@
-//! Springs, damping, friction and followers: what acts along an axis by itself. The choice of rows is explained in the
-//! module above.
+//! Springs, damping, friction and wide stops: what acts along an axis by itself. The choice of rows is explained in the module
+//! above.
 
 use ferrode::dynamics::AxisFrame;
 use ferrode::{AMotor, Error, JointKey, Slider, Softness};
 
-use super::connect::Form;
+use super::connect::{Form, set_stops, stop_softness};
 use super::{NamedWorld, refused};
 use crate::description::{Axis, JointId, Spring};
 use crate::error::{Notes, Result};
@@ -18,6 +18,8 @@ pub(super) struct Passive {
     spring: Option<(Spring, Softness)>,
     damping: f64,
     friction: f64,
+    /// Stops beyond half a turn: the number of their axis in the angular motor.
+    stops: Option<usize>,
     /// Of a prismatic axis with friction and more: which way it slides; 0 while it sticks.
     sliding: f64,
 }
@@ -29,13 +31,6 @@ enum RowPlace {
     Beside(JointKey),
     /// The joint's own motor.
     Own,
-}
-
-/// An axis that follows another.
-#[derive(Clone, Debug)]
-pub(super) struct Follower {
-    joint: JointId,
-    axis: usize,
 }
 
 pub(super) fn add(built: &mut NamedWorld, notes: &mut Notes) -> Result<()> {
@@ -50,16 +45,14 @@ pub(super) fn add(built: &mut NamedWorld, notes: &mut Notes) -> Result<()> {
             let driven = described.advanced.max_force.is_some_and(|force| force > 0.0);
             let (id, name) = (JointId(index), &described.name);
             let refused = |error: Error| refused(&described.origin, &format!("joint `{name}`"), error);
-            if axis.mimic.is_some() {
-                follow(built, id, axis_index, axis, notes);
-            }
-            let acts = axis.damping > 0.0 || axis.friction > 0.0 || axis.spring.is_some();
+            let wide = joint.has_wide_stops(&axis.limits);
+            let acts = axis.damping > 0.0 || axis.friction > 0.0 || axis.spring.is_some() || wide;
             if !acts {
                 continue;
             }
-            if joint.form == Form::Slider && (driven || axis.mimic.is_some()) {
+            if joint.form == Form::Slider && driven {
                 let message = format!(
-                    "prismatic joint `{name}`: spring, damping and friction have no effect beside a motor or <mimic>"
+                    "prismatic joint `{name}`: spring, damping and friction have no effect beside its motor"
                 );
                 notes.not_supported(described.origin.clone(), message);
                 continue;
@@ -68,24 +61,6 @@ pub(super) fn add(built: &mut NamedWorld, notes: &mut Notes) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn follow(built: &mut NamedWorld, joint: JointId, axis: usize, described: &Axis, notes: &mut Notes) {
-    let Some(mimic) = described.mimic else { return };
-    let follower = &built.scene.joints[joint.0];
-    let Some(leader) = built.scene.joints.get(mimic.leader.0) else { return };
-    if built.joint_position(mimic.leader, usize::from(mimic.second_axis)).is_none() {
-        let message =
-            format!("joint `{}` follows nothing: `{}` has no such axis", follower.name, leader.name);
-        notes.not_supported(follower.origin.clone(), message);
-        return;
-    }
-    let message = format!(
-        "joint `{}` is driven after `{}`, which does not feel it: the engine's constraints join two bodies only",
-        follower.name, leader.name
-    );
-    notes.not_supported(follower.origin.clone(), message);
-    built.followers.push(Follower { joint, axis });
 }
 
 fn add_rows(
@@ -109,19 +84,26 @@ fn add_rows(
         spring,
         damping: described.damping,
         friction: described.friction,
+        stops: None,
         sliding: 0.0,
     };
     if connected.is_angular() {
-        passive.row = RowPlace::Beside(add_angular_motor(built, &connected, axis, &passive)?);
+        let key = add_angular_motor(built, &connected, axis, &passive)?;
+        passive.row = RowPlace::Beside(key);
+        if connected.has_wide_stops(&described.limits) {
+            passive.stops = Some(add_wide_stops(built, joint, key, described)?);
+        }
     }
     // Dampers and friction beside the joint stay as they are made.
-    if passive.spring.is_some() || matches!(passive.row, RowPlace::Own) {
+    let changes = passive.spring.is_some() || passive.stops.is_some();
+    if changes || matches!(passive.row, RowPlace::Own) {
         built.passive.push(passive);
     }
     Ok(())
 }
 
-/// An angular motor about an axis of a joint: axis 1 for spring and damper, the next for friction.
+/// An angular motor about an axis of a joint: axis 1 for spring and damper, the next for friction, the next for stops.
+/// An axis without motor and stops has no row.
 fn add_angular_motor(
     built: &mut NamedWorld,
     joint: &super::connect::BuiltJoint,
@@ -145,8 +127,8 @@ fn add_angular_motor(
     world.attach(key, first, second)?;
     let mut motor = world.joint_mut::<AMotor>(key)?;
     let count = usize::from(soft) + usize::from(passive.friction > 0.0);
-    motor.set_axis_count(count);
-    for index in 0..count {
+    motor.set_axis_count(3);
+    for index in 0..3 {
         motor.set_axis(index, frame, direction)?;
     }
     if soft && passive.spring.is_none() {
@@ -158,6 +140,23 @@ fn add_angular_motor(
         motor.limit_motor_of_mut(count)?.set_motor(0.0, passive.friction)?;
     }
     Ok(key)
+}
+
+/// Stops on the next free axis of an angular motor, which tests them against an angle that it is told: that with the
+/// turns counted. The number of the axis.
+fn add_wide_stops(
+    built: &mut NamedWorld,
+    joint: JointId,
+    key: JointKey,
+    described: &Axis,
+) -> std::result::Result<usize, Error> {
+    let soft = described.damping > 0.0 || described.spring.is_some();
+    let number = 1 + usize::from(soft) + usize::from(described.friction > 0.0);
+    let softness = stop_softness(&built.scene.joints[joint.0], &described.limits, built.step_size);
+    let mut motor = built.world.joint_mut::<AMotor>(key)?;
+    let row = motor.limit_motor_of_mut(number)?;
+    set_stops(row, &built.scene.joints[joint.0], &described.limits, softness)?;
+    Ok(number)
 }
 
 impl Passive {
@@ -179,14 +178,16 @@ impl Passive {
         let step = built.step_size;
         match self.row {
             RowPlace::Beside(key) => {
-                if self.spring.is_some()
-                    && let Some(position) = joint.position(&built.world, self.axis)
-                {
+                let Some(position) = joint.position(&built.world, self.axis) else { return Ok(()) };
+                let mut motor = built.world.joint_mut::<AMotor>(key)?;
+                if self.spring.is_some() {
                     let (velocity, cfm) = self.target(position, step);
-                    let mut motor = built.world.joint_mut::<AMotor>(key)?;
-                    let motor = motor.limit_motor_of_mut(1)?;
-                    motor.set_motor(velocity, f64::INFINITY)?;
-                    motor.set_motor_cfm(cfm)?;
+                    let row = motor.limit_motor_of_mut(1)?;
+                    row.set_motor(velocity, f64::INFINITY)?;
+                    row.set_motor_cfm(cfm)?;
+                }
+                if let Some(number) = self.stops {
+                    motor.set_angle(number - 1, position)?;
                 }
             }
             RowPlace::Own => {
@@ -246,43 +247,23 @@ struct OwnMotor {
 }
 
 impl NamedWorld {
-    /// Brings springs and followers up to date with where the axes are.
+    /// Brings springs up to date with where the axes are, and enforces couplings.
     pub(super) fn update_passive(&mut self) -> std::result::Result<(), Error> {
         let mut passive = std::mem::take(&mut self.passive);
         let updated = passive.iter_mut().try_for_each(|passive| passive.update(self));
         self.passive = passive;
-        let followers = std::mem::take(&mut self.followers);
-        let followed = followers.iter().try_for_each(|follower| follower.update(self));
-        self.followers = followers;
-        updated.and(followed)
+        let couplings = std::mem::take(&mut self.couplings);
+        let coupled = couplings.iter().try_for_each(|coupling| coupling.apply(self));
+        self.couplings = couplings;
+        updated.and(coupled)
     }
 
-    /// Leaves the motor of a joint's axis to the caller: its spring, damping, friction (of a prismatic joint) and
-    /// `<mimic>` no longer touch it. Those of an angular axis have rows of their own and go on.
+    /// Leaves the motor of a joint's axis to the caller. The spring, damping and friction of a prismatic joint no longer
+    /// touch it; those of an angular axis have rows of their own and go on. A follower no longer follows.
     pub fn release_axis(&mut self, joint: JointId, axis: usize) {
         self.passive.retain(|passive| {
             !matches!(passive.row, RowPlace::Own) || passive.joint != joint || passive.axis != axis
         });
-        self.followers.retain(|follower| follower.joint != joint || follower.axis != axis);
-    }
-}
-
-impl Follower {
-    /// Aims at being, at the end of the step, where the leader will be if it keeps its velocity.
-    fn update(&self, built: &mut NamedWorld) -> std::result::Result<(), Error> {
-        let described = &built.scene.joints[self.joint.0];
-        let Some(axis) = [&described.axis, &described.axis2][self.axis].as_ref() else { return Ok(()) };
-        let Some(mimic) = axis.mimic else { return Ok(()) };
-        let leader_axis = usize::from(mimic.second_axis);
-        let Some(leader) = built.joint_position(mimic.leader, leader_axis) else { return Ok(()) };
-        let rate = built.joint_velocity(mimic.leader, leader_axis).unwrap_or(0.0);
-        let Some(own) = built.joint_position(self.joint, self.axis) else { return Ok(()) };
-        let step = built.step_size;
-        let wanted = mimic.multiplier * (leader + step * rate - mimic.reference) + mimic.offset;
-        let force = axis.limits.effort.filter(|&effort| effort > 0.0).unwrap_or(f64::INFINITY);
-        let Some(joint) = built.joints[self.joint.0].clone() else { return Ok(()) };
-        let Some(motor) = joint.motor(self.axis) else { return Ok(()) };
-        let velocity = motor.sign * (wanted - own) / step;
-        joint.with_motor(&mut built.world, motor.group, |row| row.set_motor(velocity, force))
+        self.couplings.retain(|coupling| coupling.joint != joint || coupling.axis != axis);
     }
 }
