@@ -1,10 +1,18 @@
 //! The spaces against each other, while geoms move, come and go.
 
+use ferrode_collide::space::AxisOrder;
 use ferrode_collide::{Colliders, Cuboid, Geom, GeomKey, Item, Plane, SpaceKey, SpaceKind, Sphere};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Pose, Vec3};
+use std::collections::BTreeMap;
 
-const KINDS: [SpaceKind; 3] = [SpaceKind::Simple, SpaceKind::HASH, SpaceKind::Bvh];
+const KINDS: [SpaceKind; 5] = [
+    SpaceKind::Simple,
+    SpaceKind::HASH,
+    SpaceKind::Bvh,
+    SpaceKind::Quadtree { center: [0.5, -0.25], half_sides: [5.0, 4.0], depth: 3 },
+    SpaceKind::SweepAndPrune(AxisOrder::YZX),
+];
 
 struct World {
     colliders: Colliders,
@@ -30,8 +38,10 @@ fn geom(random: &mut OdeRandom) -> Geom {
 }
 
 fn pairs(world: &mut World) -> Vec<(usize, usize)> {
+    let numbers: BTreeMap<GeomKey, usize> =
+        world.keys.iter().enumerate().filter_map(|(i, k)| k.map(|k| (k, i))).collect();
     let number = |item: Item| match item {
-        Item::Geom(key) => world.keys.iter().position(|k| *k == Some(key)).unwrap(),
+        Item::Geom(key) => numbers[&key],
         Item::Space(_) => panic!("no space in this space"),
     };
     let mut list = Vec::new();

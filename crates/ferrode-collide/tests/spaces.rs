@@ -3,6 +3,7 @@
 mod common;
 
 use common::Record;
+use ferrode_collide::space::AxisOrder;
 use ferrode_collide::{Colliders, Cuboid, Frame, Geom, GeomKey, Item, SpaceKind};
 use ferrode_math::{Pose, Quat, Vec3};
 use serde_json::Value;
@@ -13,6 +14,9 @@ fn kind(name: &str) -> Option<SpaceKind> {
         "simple" => SpaceKind::Simple,
         "hash_default" => SpaceKind::HASH,
         "hash_levels_-1_1" => SpaceKind::Hash { min_level: -1, max_level: 1 },
+        "quadtree_depth4" => SpaceKind::Quadtree { center: [0.0; 2], half_sides: [4.0; 2], depth: 4 },
+        "sap_xzy" => SpaceKind::SweepAndPrune(AxisOrder::XZY),
+        "sap_xyz" => SpaceKind::SweepAndPrune(AxisOrder::XYZ),
         _ => return None,
     })
 }
@@ -63,5 +67,5 @@ fn pairs_come_as_in_libode() {
             compared += 1;
         }
     }
-    assert!(compared >= 24, "{compared}");
+    assert!(compared >= 48, "{compared}");
 }

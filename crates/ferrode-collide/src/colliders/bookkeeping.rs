@@ -23,7 +23,14 @@ impl Colliders {
             p.category_bits = geom.category_bits;
             p.collide_bits = geom.collide_bits;
             p.body = geom.body;
-            p.enabled = geom.enabled && !geom.shape.is_zero_sized();
+            let enabled = geom.enabled && !geom.shape.is_zero_sized();
+            let switched = core::mem::replace(&mut p.enabled, enabled) != enabled;
+            let parent = self.nodes.at(slot).and_then(|n| n.parent);
+            if let Some(parent) = parent.filter(|_| switched)
+                && let Some(Content::Space(space)) = self.nodes.at_mut(parent).map(|n| &mut n.content)
+            {
+                space.broad.get_mut().switched(ProxyId(slot));
+            }
         }
     }
 
@@ -83,6 +90,9 @@ impl Colliders {
         match &node.content {
             Content::Geom(geom) => geom.aabb(),
             Content::Space(space) => {
+                if space.broad.is_endless() {
+                    return Aabb::EVERYTHING;
+                }
                 let members = space.broad.members();
                 if members.is_empty() {
                     return Aabb::new(ferrode_math::Vec3::ZERO, ferrode_math::Vec3::ZERO);
@@ -137,6 +147,13 @@ impl Colliders {
         match &self.nodes.get(key.0)?.content {
             Content::Space(s) => Some(s),
             Content::Geom(_) => None,
+        }
+    }
+
+    pub(super) fn space_node_mut(&mut self, key: SpaceKey) -> Result<&mut SpaceNode, ColliderError> {
+        match self.nodes.get_mut(key.0).map(|n| &mut n.content) {
+            Some(Content::Space(s)) => Ok(s),
+            _ => Err(ColliderError::NoSuchSpace(key)),
         }
     }
 

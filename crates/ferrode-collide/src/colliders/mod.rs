@@ -5,7 +5,8 @@ mod pairs;
 
 use crate::arena::{Arena, Key};
 use crate::space::{
-    BroadPhase, BvhSpace, HashSpace, Members, Proxy, ProxyId, ProxyTable, Scratch, SimpleSpace,
+    AxisOrder, BroadPhase, BvhSpace, HashSpace, Members, Proxy, ProxyId, ProxyTable, QuadtreeSpace, Scratch,
+    SimpleSpace, SweepAndPruneSpace,
 };
 use crate::{Frame, Geom, Shape};
 use core::fmt;
@@ -53,6 +54,17 @@ pub enum SpaceKind {
         /// Largest cells measure 2 to this power.
         max_level: i32,
     },
+    /// Fixed tree of squares over x and y: [`QuadtreeSpace`].
+    Quadtree {
+        /// Centre of the largest square, x and y in metres.
+        center: [f64; 2],
+        /// Its half sides.
+        half_sides: [f64; 2],
+        /// How often it is halved: at most [`QuadtreeSpace::MAX_DEPTH`].
+        depth: u32,
+    },
+    /// Boxes sorted along an axis: [`SweepAndPruneSpace`].
+    SweepAndPrune(AxisOrder),
     /// Tree of boxes kept from step to step: [`BvhSpace`]. The fastest for many geoms; ODE has none.
     Bvh,
 }
@@ -60,6 +72,22 @@ pub enum SpaceKind {
 impl SpaceKind {
     /// A hash space with ODE's levels, −3 to 10.
     pub const HASH: Self = Self::Hash { min_level: -3, max_level: 10 };
+
+    fn check(&self) -> Result<(), ColliderError> {
+        if let Self::Quadtree { center, half_sides, depth } = *self {
+            let bad = |what, value| Err(ColliderError::BadSpace { what, value });
+            if let Some(&x) = center.iter().find(|x| !x.is_finite()) {
+                return bad("quadtree centre", x);
+            }
+            if let Some(&x) = half_sides.iter().find(|x| !(x.is_finite() && **x >= 0.0)) {
+                return bad("quadtree half side", x);
+            }
+            if depth > QuadtreeSpace::MAX_DEPTH {
+                return bad("quadtree depth", f64::from(depth));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What cannot be done, and to what.
@@ -75,6 +103,13 @@ pub enum ColliderError {
     BadPose(Pose),
     /// A space cannot contain itself.
     SpaceWithinItself(SpaceKey),
+    /// A space cannot be made with this number.
+    BadSpace {
+        /// Which number, as `quadtree depth`.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
 }
 
 impl fmt::Display for ColliderError {
@@ -85,6 +120,7 @@ impl fmt::Display for ColliderError {
             Self::NotPlaceable(key) => write!(f, "a plane has no pose, offset or body: {key:?}"),
             Self::BadPose(pose) => write!(f, "pose is not finite: {pose:?}"),
             Self::SpaceWithinItself(key) => write!(f, "a space cannot contain itself: {key:?}"),
+            Self::BadSpace { what, value } => write!(f, "no space has this {what}: {value}"),
         }
     }
 }
@@ -96,6 +132,8 @@ impl core::error::Error for ColliderError {}
 enum Broad {
     Simple(SimpleSpace),
     Hash(HashSpace),
+    Quadtree(QuadtreeSpace),
+    SweepAndPrune(SweepAndPruneSpace),
     Bvh(BvhSpace),
 }
 
@@ -106,6 +144,10 @@ impl Broad {
             SpaceKind::Hash { min_level, max_level } => {
                 Self::Hash(HashSpace::with_levels(min_level, max_level))
             }
+            SpaceKind::Quadtree { center, half_sides, depth } => {
+                Self::Quadtree(QuadtreeSpace::new(center, half_sides, depth))
+            }
+            SpaceKind::SweepAndPrune(order) => Self::SweepAndPrune(SweepAndPruneSpace::new(order)),
             SpaceKind::Bvh => Self::Bvh(BvhSpace::new()),
         }
     }
@@ -114,6 +156,8 @@ impl Broad {
         match self {
             Self::Simple(s) => s,
             Self::Hash(s) => s,
+            Self::Quadtree(s) => s,
+            Self::SweepAndPrune(s) => s,
             Self::Bvh(s) => s,
         }
     }
@@ -122,12 +166,26 @@ impl Broad {
         match self {
             Self::Simple(s) => s,
             Self::Hash(s) => s,
+            Self::Quadtree(s) => s,
+            Self::SweepAndPrune(s) => s,
             Self::Bvh(s) => s,
         }
     }
 
     fn members(&self) -> &Members {
         self.get().members()
+    }
+
+    /// The members in ODE's order.
+    fn enumerate<'a>(&'a self, table: &'a ProxyTable) -> impl Iterator<Item = ProxyId> + 'a {
+        let [dirty, clean] = self.get().arrays().unwrap_or_default();
+        let list = self.get().arrays().is_none().then(|| self.members().iter(table));
+        dirty.iter().chain(clean).copied().chain(list.into_iter().flatten())
+    }
+
+    /// Whether the space's own box is all of the world: ODE's quadtree and sweep-and-prune spaces.
+    fn is_endless(&self) -> bool {
+        matches!(self, Self::Quadtree(_) | Self::SweepAndPrune(_))
     }
 }
 
@@ -136,6 +194,9 @@ struct SpaceNode {
     broad: Broad,
     sublevel: i32,
     kind: SpaceKind,
+    /// Removing the space removes its members.
+    cleanup: bool,
+    manual_cleanup: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -159,6 +220,9 @@ struct Node {
 ///
 /// Lists and pairs come in ODE's order: the newest member of a space first, and a member that moves goes to the
 /// front. Boxes are recomputed when a question needs them, so [`set_pose`](Self::set_pose) is cheap.
+///
+/// ODE locks a space while it reports pairs, and errs when a callback changes it. Here callbacks get a shared
+/// reference, so that the compiler turns such a program away.
 ///
 /// ```
 /// use ferrode_collide::{CollideOptions, Colliders, Geom, SpaceKind, Sphere};
@@ -196,7 +260,9 @@ impl Colliders {
         parent: Option<SpaceKey>,
         kind: SpaceKind,
     ) -> Result<SpaceKey, ColliderError> {
-        let node = SpaceNode { broad: Broad::new(kind), sublevel: 0, kind };
+        kind.check()?;
+        let node =
+            SpaceNode { broad: Broad::new(kind), sublevel: 0, kind, cleanup: true, manual_cleanup: false };
         self.add(parent, Content::Space(Box::new(node))).map(SpaceKey)
     }
 
@@ -218,12 +284,15 @@ impl Colliders {
         }
     }
 
-    /// Removes a space and all that is in it. Returns whether there was one.
+    /// Removes a space and all that is in it, unless [`set_cleanup`](Self::set_cleanup) says that its members stay:
+    /// these are then in no space. Returns whether there was one.
     pub fn remove_space(&mut self, key: SpaceKey) -> bool {
         let Some(space) = self.space_node(key) else { return false };
         let members: Vec<_> = space.broad.members().iter(&self.table).collect();
+        let cleanup = space.cleanup;
         for id in members {
             match self.item(id) {
+                _ if !cleanup => self.detach(id.0),
                 Item::Geom(geom) => {
                     self.remove_geom(geom);
                 }
@@ -289,10 +358,11 @@ impl Colliders {
         self.space_node(space).map_or(0, |s| s.broad.members().len())
     }
 
-    /// The members directly in a space, in ODE's order: newest or last moved first.
+    /// The members directly in a space, in ODE's order: newest or last moved first; for sweep and prune those moved
+    /// since the last question, then the others.
     pub fn members(&self, space: SpaceKey) -> impl Iterator<Item = Item> + '_ {
         let node = self.space_node(space);
-        node.into_iter().flat_map(|s| s.broad.members().iter(&self.table)).map(|id| self.item(id))
+        node.into_iter().flat_map(|s| s.broad.enumerate(&self.table)).map(|id| self.item(id))
     }
 
     /// All geoms, in no order that means anything.
@@ -413,32 +483,45 @@ impl Colliders {
 
     /// Sets a space's sublevel.
     pub fn set_sublevel(&mut self, key: SpaceKey, sublevel: i32) -> Result<(), ColliderError> {
-        match self.nodes.get_mut(key.0).map(|n| &mut n.content) {
-            Some(Content::Space(s)) => {
-                s.sublevel = sublevel;
-                Ok(())
-            }
-            _ => Err(ColliderError::NoSuchSpace(key)),
-        }
+        self.space_node_mut(key)?.sublevel = sublevel;
+        Ok(())
+    }
+
+    /// Whether removing a space removes its members too; true at first.
+    pub fn cleanup(&self, key: SpaceKey) -> Option<bool> {
+        self.space_node(key).map(|s| s.cleanup)
+    }
+
+    /// Sets whether removing a space removes its members too.
+    pub fn set_cleanup(&mut self, key: SpaceKey, cleanup: bool) -> Result<(), ColliderError> {
+        self.space_node_mut(key)?.cleanup = cleanup;
+        Ok(())
+    }
+
+    /// ODE's flag for which cache a space's meshes use. Kept for its users; no cache here needs it.
+    pub fn manual_cleanup(&self, key: SpaceKey) -> Option<bool> {
+        self.space_node(key).map(|s| s.manual_cleanup)
+    }
+
+    /// Sets the flag that [`manual_cleanup`](Self::manual_cleanup) returns.
+    pub fn set_manual_cleanup(&mut self, key: SpaceKey, manual: bool) -> Result<(), ColliderError> {
+        self.space_node_mut(key)?.manual_cleanup = manual;
+        Ok(())
     }
 
     /// Sets the levels of a hash space; other kinds have none and stay as they are.
     pub fn set_hash_levels(&mut self, key: SpaceKey, min: i32, max: i32) -> Result<(), ColliderError> {
-        match self.nodes.get_mut(key.0).map(|n| &mut n.content) {
-            Some(Content::Space(s)) => {
-                if let Broad::Hash(hash) = &mut s.broad {
-                    hash.set_levels(min, max);
-                    let (min_level, max_level) = hash.levels();
-                    s.kind = SpaceKind::Hash { min_level, max_level };
-                }
-                Ok(())
-            }
-            _ => Err(ColliderError::NoSuchSpace(key)),
+        let s = self.space_node_mut(key)?;
+        if let Broad::Hash(hash) = &mut s.broad {
+            hash.set_levels(min, max);
+            let (min_level, max_level) = hash.levels();
+            s.kind = SpaceKind::Hash { min_level, max_level };
         }
+        Ok(())
     }
 
     /// The world box around a geom, or around all geoms in a space. An empty space has a box of no size at the
-    /// origin.
+    /// origin; a quadtree or sweep-and-prune space always has all of the world.
     pub fn aabb(&self, item: impl Into<Item>) -> Option<Aabb> {
         let key = self.checked(item.into()).ok()?;
         Some(self.current_aabb(key.slot))

@@ -92,12 +92,12 @@ impl Colliders {
                 } else if na.sublevel < nb.sublevel {
                     self.lookup(kb.slot, ka.slot, &mut |member| report(self, a, member));
                 } else if na.broad.members().len() >= nb.broad.members().len() {
-                    for id in nb.broad.members().iter(&self.table) {
+                    for id in nb.broad.enumerate(&self.table) {
                         let other = self.item(id);
                         self.lookup(ka.slot, id.0, &mut |member| report(self, member, other));
                     }
                 } else {
-                    for id in na.broad.members().iter(&self.table) {
+                    for id in na.broad.enumerate(&self.table) {
                         let other = self.item(id);
                         self.lookup(kb.slot, id.0, &mut |member| report(self, other, member));
                     }
@@ -110,7 +110,7 @@ impl Colliders {
     fn lookup(&self, space: u32, single: u32, report: &mut dyn FnMut(Item)) {
         let Some(node) = self.space_at(space) else { return };
         let proxy = self.current_proxy(single);
-        node.broad.get().collide_with(&self.table, &proxy, &mut |id| {
+        node.broad.get().collide_with(&self.table, Some(ProxyId(single)), &proxy, &mut |id| {
             if id.0 != single {
                 report(self.item(id));
             }

@@ -136,7 +136,13 @@ impl BroadPhase for BvhSpace {
     }
 
     /// In the order of the tree.
-    fn collide_with(&self, table: &ProxyTable, proxy: &Proxy, report: &mut dyn FnMut(ProxyId)) {
+    fn collide_with(
+        &self,
+        table: &ProxyTable,
+        _: Option<ProxyId>,
+        proxy: &Proxy,
+        report: &mut dyn FnMut(ProxyId),
+    ) {
         let mut consider = |id: ProxyId| {
             let member = table.get(id);
             if member.enabled && passes(proxy, member) {

@@ -236,7 +236,13 @@ impl BroadPhase for HashSpace {
         }
     }
 
-    fn collide_with(&self, table: &ProxyTable, proxy: &Proxy, report: &mut dyn FnMut(ProxyId)) {
+    fn collide_with(
+        &self,
+        table: &ProxyTable,
+        _: Option<ProxyId>,
+        proxy: &Proxy,
+        report: &mut dyn FnMut(ProxyId),
+    ) {
         scan(&self.members, table, proxy, report);
     }
 

@@ -7,13 +7,17 @@
 mod bvh;
 mod hash;
 mod proxy;
+mod quadtree;
 mod simple;
+mod sweep_and_prune;
 pub mod tree;
 
 pub use bvh::BvhSpace;
 pub use hash::HashSpace;
 pub use proxy::{Members, Proxy, ProxyId, ProxyTable};
+pub use quadtree::QuadtreeSpace;
 pub use simple::SimpleSpace;
+pub use sweep_and_prune::{AxisOrder, SweepAndPruneSpace};
 
 /// What every kind of space can do.
 ///
@@ -30,10 +34,23 @@ pub trait BroadPhase {
     fn update(&mut self, table: &ProxyTable);
     /// Reports every pair of members that may touch, once.
     fn collide(&self, table: &ProxyTable, scratch: &mut Scratch, report: &mut dyn FnMut(ProxyId, ProxyId));
-    /// Reports every enabled member that may touch `proxy`, which need not be in this space.
-    fn collide_with(&self, table: &ProxyTable, proxy: &Proxy, report: &mut dyn FnMut(ProxyId));
+    /// Reports every enabled member that may touch `proxy`, which need not be in this space; `id` is its number, if it
+    /// has one.
+    fn collide_with(
+        &self,
+        table: &ProxyTable,
+        id: Option<ProxyId>,
+        proxy: &Proxy,
+        report: &mut dyn FnMut(ProxyId),
+    );
+    /// Notes that a member was switched on or off.
+    fn switched(&mut self, _id: ProxyId) {}
     /// The members, newest or last moved first.
     fn members(&self) -> &Members;
+    /// The members in the order in which ODE counts them, where that is not the order of the list.
+    fn arrays(&self) -> Option<[&[ProxyId]; 2]> {
+        None
+    }
 }
 
 /// Memory that a search needs while it runs; kept between searches so that nothing is allocated.

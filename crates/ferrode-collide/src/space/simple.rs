@@ -50,7 +50,13 @@ impl BroadPhase for SimpleSpace {
         }
     }
 
-    fn collide_with(&self, table: &ProxyTable, proxy: &Proxy, report: &mut dyn FnMut(ProxyId)) {
+    fn collide_with(
+        &self,
+        table: &ProxyTable,
+        _: Option<ProxyId>,
+        proxy: &Proxy,
+        report: &mut dyn FnMut(ProxyId),
+    ) {
         scan(&self.members, table, proxy, report);
     }
 
