@@ -635,17 +635,14 @@ impl Describer<'_, '_> {
         let mut inertial = link.inertial;
         if let Some(automatic) = link.automatic {
             let mut skipped = Vec::new();
-            let found = inertia::from_collisions(collisions.iter(), automatic.density, |collision| {
-                skipped.push(collision)
-            });
-            for collision in skipped {
+            let found =
+                inertia::from_collisions(collisions.iter(), automatic.density, |collision, reason| {
+                    skipped.push((collision, reason));
+                });
+            for (collision, reason) in skipped {
                 self.notes.not_supported(
                     collision.origin.clone(),
-                    format!(
-                        "the {} of collision `{}` adds nothing to the automatic inertia",
-                        collision.geometry.kind(),
-                        collision.name
-                    ),
+                    format!("collision `{}` adds nothing to the automatic inertia: {reason}", collision.name),
                 );
             }
             inertial = found.ok_or_else(|| {

@@ -7,9 +7,12 @@ use crate::description::{Collision, Geometry, Inertial};
 /// Mass, centre and inertia (about the centre, along the shape's axes) of a solid shape of unit density.
 ///
 /// Textbook integrals over the solid; for the capsule the half-spheres are carried to the ends of the cylinder by
-/// the parallel axis theorem, their own centres being 3/8 r above their flat sides. `None` for shapes without
-/// a volume of their own.
-pub(crate) fn solid(geometry: &Geometry) -> Option<Inertial> {
+/// the parallel axis theorem, their own centres being 3/8 r above their flat sides. Meshes and polylines are
+/// integrated triangle by triangle.
+///
+/// # Errors
+/// Why the shape has no volume.
+pub(crate) fn solid(geometry: &Geometry) -> std::result::Result<Inertial, String> {
     let pi = std::f64::consts::PI;
     let (volume, moments, centre) = match *geometry {
         Geometry::Cuboid { size } => {
@@ -47,22 +50,32 @@ pub(crate) fn solid(geometry: &Geometry) -> Option<Inertial> {
             // The centre of mass is a quarter of the height above the base.
             (volume, Vec3::new(across, across, 0.3 * volume * rr), Vec3::new(0.0, 0.0, -0.25 * length))
         }
-        _ => return None,
+        _ => return solid_of_triangles(geometry),
     };
-    Some(Inertial { mass: volume, pose: Pose::from_position(centre), inertia: Mat3::from_diagonal(moments) })
+    Ok(Inertial { mass: volume, pose: Pose::from_position(centre), inertia: Mat3::from_diagonal(moments) })
+}
+
+fn solid_of_triangles(geometry: &Geometry) -> std::result::Result<Inertial, String> {
+    let Some(triangles) = geometry.triangles() else {
+        return Err(format!("a {} has no volume", geometry.kind()));
+    };
+    let triangles = triangles?;
+    let mass = ferrode::Mass::trimesh(1.0, &triangles.vertices, &triangles.triangles)
+        .map_err(|error| error.to_string())?;
+    Ok(Inertial { mass: mass.mass, pose: Pose::from_position(mass.centre), inertia: mass.about_centre() })
 }
 
 /// The inertial of a link from its collisions, in the link frame. Collisions whose shape has no volume of its own
-/// are handed to `skipped`. `None` if nothing with a volume is left.
+/// are handed to `skipped`, with the reason. `None` if nothing with a volume is left.
 pub(crate) fn from_collisions<'a>(
     collisions: impl Iterator<Item = &'a Collision>,
     density: f64,
-    mut skipped: impl FnMut(&'a Collision),
+    mut skipped: impl FnMut(&'a Collision, String),
 ) -> Option<Inertial> {
     let mut parts = Vec::new();
     for collision in collisions {
         match solid(&collision.geometry) {
-            Some(part) => {
+            Ok(part) => {
                 let density = collision.density.unwrap_or(density);
                 parts.push(Inertial {
                     mass: part.mass * density,
@@ -70,7 +83,7 @@ pub(crate) fn from_collisions<'a>(
                     inertia: part.inertia * density,
                 });
             }
-            None => skipped(collision),
+            Err(reason) => skipped(collision, reason),
         }
     }
     combine(&parts)

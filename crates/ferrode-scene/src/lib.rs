@@ -41,6 +41,7 @@ pub mod error;
 mod frames;
 mod inertia;
 mod merge;
+mod mesh;
 mod sdf;
 pub mod source;
 mod urdf;
@@ -52,6 +53,7 @@ use std::path::{Path, PathBuf};
 pub use build::{BuildOptions, NamedJoint, NamedLink, NamedWorld, build};
 pub use description::Scene;
 pub use error::{Result, SceneError, Warning, WarningKind};
+pub use mesh::Triangles;
 pub use source::{Origin, Source};
 
 use context::Context;

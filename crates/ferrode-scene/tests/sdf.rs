@@ -426,3 +426,74 @@ fn a_file_that_is_not_there_is_an_error() {
     let error = load(data("models"), &options()).expect_err("a folder");
     assert!(error.message().contains("cannot be read"), "{error}");
 }
+
+/// Makes a binary STL file of the box in `box.obj`, and says where it is.
+fn binary_stl() -> std::path::PathBuf {
+    let text = std::fs::read_to_string(data("meshes").join("box.obj")).unwrap();
+    let words = |kind: &str| -> Vec<Vec<f32>> {
+        let lines = text.lines().filter_map(|line| line.strip_prefix(kind));
+        lines.map(|line| line.split_whitespace().map(|word| word.parse().unwrap()).collect()).collect()
+    };
+    let (corners, faces) = (words("v "), words("f "));
+    let mut bytes = vec![b' '; 80];
+    bytes.extend((faces.len() as u32).to_le_bytes());
+    for face in faces {
+        bytes.extend([0; 12]);
+        for corner in face {
+            bytes.extend(corners[corner as usize - 1].iter().flat_map(|x| x.to_le_bytes()));
+        }
+        bytes.extend([0; 2]);
+    }
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("box.stl");
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+#[test]
+fn meshes_are_read_scaled_and_weighed() {
+    let stl = binary_stl();
+    let mesh = |file: &str, more: &str, auto: &str| {
+        let uri = if file == "box.stl" { stl.clone() } else { data("meshes").join(file) };
+        let text = format!(
+            "<sdf version='1.12'><model name='m'><link name='l'><inertial auto='{auto}'/><collision name='c'><geometry><mesh>
+             <uri>{}</uri>{more}</mesh></geometry></collision></link></model></sdf>",
+            uri.display()
+        );
+        read(&text)
+    };
+    // A box of 1 × 2 × 3 with a corner at the origin, as binary and ASCII STL, OBJ and COLLADA (in centimetres).
+    for file in ["box.stl", "box_ascii.stl", "box.obj", "box.dae"] {
+        let loaded = mesh(file, "", "true");
+        assert!(loaded.warnings.is_empty(), "{file}: {:?}", loaded.warnings);
+        let link = &loaded.scene.links[0];
+        let inertial = &link.inertial;
+        assert!((inertial.mass - 6000.0).abs() < 1e-3, "{file}: {}", inertial.mass);
+        assert!((inertial.pose.position - Vec3::new(0.5, 1.0, 1.5)).length() < 1e-6, "{file}");
+        assert!((inertial.inertia.rows[0][0] - 6000.0 * 13.0 / 12.0).abs() < 1e-2, "{file}");
+        let triangles = link.collisions[0].geometry.triangles().unwrap().unwrap();
+        assert_eq!(triangles.triangles.len(), 12, "{file}");
+    }
+    // Mirrored and twice as long: still right side out.
+    let loaded = mesh("box.stl", "<scale>-1 2 1</scale>", "true");
+    let inertial = &loaded.scene.links[0].inertial;
+    assert!((inertial.mass - 12_000.0).abs() < 1e-2, "{}", inertial.mass);
+    assert!((inertial.pose.position - Vec3::new(-0.5, 2.0, 1.5)).length() < 1e-6);
+    let geometry = &mesh("box.obj", "<submesh><name>lid</name></submesh>", "false").scene.links[0].collisions
+        [0]
+    .geometry;
+    let error = geometry.triangles().unwrap().unwrap_err();
+    assert!(error.contains("has no part `lid`"), "{error}");
+}
+
+#[test]
+fn an_open_mesh_has_no_automatic_inertia() {
+    let uri = data("meshes").join("open.obj");
+    let text = format!(
+        "<sdf version='1.12'><model name='m'><link name='l'>\n<inertial auto='true'/><collision name='c'><geometry><mesh>
+         <uri>{}</uri></mesh></geometry></collision></link></model></sdf>",
+        uri.display()
+    );
+    let error = load_str("t", &text, &options()).expect_err("open");
+    assert!(error.message().contains("no collision gives it a volume"), "{error}");
+    assert_eq!(error.line(), Some(2));
+}
