@@ -74,6 +74,12 @@ impl<'a> Contacts<'a> {
         Self { list, start, options }
     }
 
+    /// Room for any number of contacts at the end of the list, to choose from afterwards.
+    pub(crate) fn all(&mut self) -> Contacts<'_> {
+        let options = CollideOptions { max_contacts: u16::MAX, ..self.options };
+        Contacts { start: self.list.len(), list: self.list, options }
+    }
+
     /// What was asked for.
     #[inline]
     pub fn options(&self) -> CollideOptions {

@@ -38,4 +38,6 @@ pub use colliders::{ColliderError, Colliders, GeomKey, Item, SpaceKey, SpaceKind
 pub use contact::{CollideOptions, Contacts, GeomContact};
 pub use frame::Frame;
 pub use geom::Geom;
-pub use shape::{Capsule, Convex, Cuboid, Cylinder, Plane, Ray, Shape, ShapeError, ShapeKind, Sphere};
+pub use shape::{
+    Capsule, Convex, Cuboid, Cylinder, Plane, Ray, Shape, ShapeError, ShapeKind, Sphere, TriMesh,
+};

@@ -59,6 +59,14 @@ fn closed_form_pairs_are_libodes() {
             // A polyhedron wholly below the plane: libode lets it fall.
             assert!(!got.is_empty() && got.iter().all(|c| c.point.depth > 0.0), "{case}\n{got:?}");
             repaired += 1;
+        } else if has("cylinder") && has("box") && want.is_empty() {
+            // Overlap that libode's clipping loses: of bodies with one centre, for instance.
+            let truth = match &case["truth"] {
+                Value::Null if case["kind"] == "concentric" => 0.1,
+                truth => number(&truth["mtd"]),
+            };
+            assert!(truth > 1e-4 && got.iter().any(|c| c.point.depth > truth - 1e-4), "{case}\n{got:?}");
+            repaired += 1;
         } else if has("cylinder") && has("box") {
             // A cap flat on a face: rounding noise decides at which corner libode begins to clip, and so, if there
             // are more corners than wanted, which ones it reports. They are among ours, with the same depth. Corners

@@ -1,5 +1,8 @@
 //! Cylinder against box: separating axes, then clipping of what faces the other.
 
+use super::convex::touch;
+use super::manifold::add_manifold;
+use super::support::Body;
 use crate::{Contacts, Cuboid, Cylinder, Frame};
 use core::f64::consts::FRAC_PI_8;
 use ferrode_math::{Vec3, real};
@@ -244,5 +247,13 @@ pub fn cylinder_cuboid(cylinder: &Cylinder, fc: &Frame, cuboid: &Cuboid, fb: &Fr
         pair.side_contacts(&best, out);
     } else {
         pair.cap_contacts(&best, out);
+    }
+    // An edge beside the part that was clipped leaves nothing, though the bodies overlap. Libode then has no contact.
+    if out.is_empty() && best.overlap > 1e-9 * cylinder.length().max(cylinder.radius()) {
+        let a = Body::cylinder(cylinder, fc, fc.position);
+        let b = Body::cuboid(cuboid, fb, fc.position);
+        if let Some(t) = touch(&a, &b) {
+            add_manifold(&a, &b, &t, fc.position, out);
+        }
     }
 }

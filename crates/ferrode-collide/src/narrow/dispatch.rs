@@ -31,10 +31,24 @@ macro_rules! swap {
     }};
 }
 
+fn run_mesh(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    if let Shape::TriMesh(mesh) = b {
+        body_trimesh(a, fa, mesh, fb, out);
+    }
+}
+
+fn run_mesh_swapped(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    run_mesh(b, fb, a, fa, out);
+    out.swap();
+}
+
 const NONE: Option<Collider> = None;
 /// Convex bodies without a file of their own for the pair.
 const BODIES: Option<Collider> = Some(convex_bodies);
-const KINDS: usize = 7;
+/// A convex body and a mesh.
+const MESH: Option<Collider> = Some(run_mesh);
+const MESH_SWAPPED: Option<Collider> = Some(run_mesh_swapped);
+const KINDS: usize = 8;
 
 /// Row: the first shape; column: the second.
 #[rustfmt::skip]
@@ -48,6 +62,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Sphere, Plane, sphere_plane),                 // Plane
         swap!(Sphere, Ray, ray_sphere),                     // Ray
         BODIES,                                             // Convex
+        pair!(Sphere, TriMesh, sphere_trimesh),             // TriMesh
     ],
     // Cuboid
     [
@@ -58,6 +73,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Cuboid, Plane, cuboid_plane),                 // Plane
         swap!(Cuboid, Ray, ray_cuboid),                     // Ray
         BODIES,                                             // Convex
+        MESH,                                               // TriMesh
     ],
     // Capsule
     [
@@ -68,6 +84,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Capsule, Plane, capsule_plane),               // Plane
         swap!(Capsule, Ray, ray_capsule),                   // Ray
         BODIES,                                             // Convex
+        MESH,                                               // TriMesh
     ],
     // Cylinder
     [
@@ -78,6 +95,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Cylinder, Plane, cylinder_plane),             // Plane
         swap!(Cylinder, Ray, ray_cylinder),                 // Ray
         BODIES,                                             // Convex
+        MESH,                                               // TriMesh
     ],
     // Plane
     [
@@ -88,6 +106,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         NONE,                                               // Plane
         swap!(Plane, Ray, ray_plane),                       // Ray
         swap!(Plane, Convex, convex_plane),                 // Convex
+        swap!(Plane, TriMesh, trimesh_plane),               // TriMesh
     ],
     // Ray
     [
@@ -98,6 +117,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Ray, Plane, ray_plane),                       // Plane
         NONE,                                               // Ray
         pair!(Ray, Convex, ray_convex),                     // Convex
+        pair!(Ray, TriMesh, ray_trimesh),                   // TriMesh
     ],
     // Convex
     [
@@ -108,6 +128,18 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Convex, Plane, convex_plane),                 // Plane
         swap!(Convex, Ray, ray_convex),                     // Ray
         BODIES,                                             // Convex
+        MESH,                                               // TriMesh
+    ],
+    // TriMesh
+    [
+        swap!(TriMesh, Sphere, sphere_trimesh),             // Sphere
+        MESH_SWAPPED,                                       // Cuboid
+        MESH_SWAPPED,                                       // Capsule
+        MESH_SWAPPED,                                       // Cylinder
+        pair!(TriMesh, Plane, trimesh_plane),               // Plane
+        swap!(TriMesh, Ray, ray_trimesh),                   // Ray
+        MESH_SWAPPED,                                       // Convex
+        pair!(TriMesh, TriMesh, trimesh_trimesh),           // TriMesh
     ],
 ];
 

@@ -137,9 +137,15 @@ fn disc(center: Vec3, normal: Vec3, radius: f64, radial: Vec3, fallback: Vec3) -
 }
 
 /// A few contacts, before those wanted are chosen.
-struct Found {
+pub(super) struct Found {
     list: [(Vec3, f64); CORNERS],
     count: usize,
+}
+
+impl Default for Found {
+    fn default() -> Self {
+        Self { list: [(Vec3::ZERO, 0.0); CORNERS], count: 0 }
+    }
 }
 
 impl Found {
@@ -148,6 +154,14 @@ impl Found {
             self.list[self.count] = (position, depth);
             self.count += 1;
         }
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = &(Vec3, f64)> {
+        self.list[..self.count].iter()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
     }
 
     fn deepest(&self) -> usize {
@@ -170,7 +184,7 @@ impl Found {
 pub(crate) fn add_manifold(a: &Body<'_>, b: &Body<'_>, touch: &Touch, origin: Vec3, out: &mut Contacts<'_>) {
     let n = touch.normal;
     let single = ((touch.a + touch.b) * 0.5, touch.depth);
-    let mut found = Found { list: [(Vec3::ZERO, 0.0); CORNERS], count: 0 };
+    let mut found = Found::default();
     if out.capacity() > 1 && !out.options().unimportant {
         let (fa, fb) = (Feature::of(a, -n), Feature::of(b, n));
         let aligned_a = fa.normal.map_or(0.0, |m| -m.dot(n));
@@ -190,6 +204,39 @@ pub(crate) fn add_manifold(a: &Body<'_>, b: &Body<'_>, touch: &Touch, origin: Ve
         found.count = found.count.min(CORNERS - 1);
         found.push(single.0, single.1);
     }
+    add(&found, n, origin, out);
+}
+
+/// The part of `other`, seen along `toward`, that lies over and below the face of `body` seen along `normal`.
+pub(super) fn below_face(body: &Body<'_>, normal: Vec3, other: &Body<'_>, toward: Vec3) -> Found {
+    let mut found = Found::default();
+    clip_to_face(&Feature::of(body, normal), &Feature::of(other, toward), &mut found);
+    found
+}
+
+/// Adds the contacts of `a` with the face of `b` that has the normal `n`, and no others.
+pub(super) fn add_face_contacts(a: &Body<'_>, b: &Body<'_>, n: Vec3, out: &mut Contacts<'_>) {
+    let face = Feature::of(b, n);
+    let mut found = Found::default();
+    clip_to_face(&face, &Feature::of(a, -n), &mut found);
+    // The lowest corner need not be one of the face that looks most downward.
+    let lowest = a.support(-n) - n * a.margin;
+    let depth = n.dot(face.points[0] - lowest);
+    let over = (0..face.count).all(|i| {
+        let (p, q) = (face.points[i], face.points[(i + 1) % face.count]);
+        n.cross(q - p).dot(lowest - p) >= 0.0
+    });
+    let enough = depth - 1e-6 * (a.reach() + b.reach());
+    if over && depth >= 0.0 && (found.is_empty() || found.list[found.deepest()].1 < enough) {
+        found.push(lowest + n * (0.5 * depth), depth);
+    }
+    if !found.is_empty() {
+        add(&found, n, Vec3::ZERO, out);
+    }
+}
+
+/// Adds what was found, or if that is more than wanted, the deepest and the furthest from those that stay.
+fn add(found: &Found, n: Vec3, origin: Vec3, out: &mut Contacts<'_>) {
     let wanted = out.capacity().min(MOST);
     if found.count <= wanted {
         for &(p, depth) in &found.list[..found.count] {

@@ -5,6 +5,7 @@
 //! rows decides what `Quick` computes.
 
 mod bodies;
+mod body_trimesh;
 mod capsule_capsule;
 mod capsule_cuboid;
 mod capsule_cylinder;
@@ -30,13 +31,20 @@ mod ray_cuboid;
 mod ray_cylinder;
 mod ray_plane;
 mod ray_sphere;
+mod ray_trimesh;
+mod reduce;
 mod slab;
 mod sphere_cuboid;
 mod sphere_plane;
 mod sphere_sphere;
+mod sphere_trimesh;
 mod support;
+mod triangle;
+mod trimesh_plane;
+mod trimesh_trimesh;
 
 pub use bodies::convex_bodies;
+pub use body_trimesh::body_trimesh;
 pub use capsule_capsule::capsule_capsule;
 pub use capsule_cuboid::capsule_cuboid;
 pub use capsule_cylinder::capsule_cylinder;
@@ -58,6 +66,10 @@ pub use ray_cuboid::ray_cuboid;
 pub use ray_cylinder::ray_cylinder;
 pub use ray_plane::ray_plane;
 pub use ray_sphere::ray_sphere;
+pub use ray_trimesh::ray_trimesh;
 pub use sphere_cuboid::sphere_cuboid;
 pub use sphere_plane::sphere_plane;
 pub use sphere_sphere::{sphere_sphere, spheres};
+pub use sphere_trimesh::sphere_trimesh;
+pub use trimesh_plane::trimesh_plane;
+pub use trimesh_trimesh::trimesh_trimesh;

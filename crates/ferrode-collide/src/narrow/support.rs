@@ -39,7 +39,7 @@ impl<'a> Body<'a> {
             Shape::Capsule(s) => Self::capsule(s, frame, origin),
             Shape::Cylinder(s) => Self::cylinder(s, frame, origin),
             Shape::Convex(s) => Self::new(Core::Hull(s, s.reach()), 0.0, frame, origin),
-            Shape::Plane(_) | Shape::Ray(_) => return None,
+            Shape::Plane(_) | Shape::Ray(_) | Shape::TriMesh(_) => return None,
         })
     }
 
@@ -111,6 +111,14 @@ impl<'a> Body<'a> {
             Core::Triangle(p) => p.iter().map(|p| p.length()).fold(0.0, f64::max),
         };
         core + self.margin
+    }
+
+    /// A point within the body.
+    pub fn middle(&self) -> Vec3 {
+        match self.core {
+            Core::Hull(hull, _) => self.place(hull.middle()),
+            _ => self.center,
+        }
     }
 
     /// World axis `i` of the body.

@@ -16,6 +16,7 @@ struct Polyhedron {
     /// Corners of all faces, one after another.
     corners: Vec<u32>,
     volume: f64,
+    middle: Vec3,
 }
 
 /// A face of a polyhedron.
@@ -52,8 +53,9 @@ impl Convex {
             faces: Vec::with_capacity(faces.len()),
             corners: Vec::new(),
             volume: 0.0,
+            middle: points.iter().fold(Vec3::ZERO, |sum, &p| sum + p) / points.len() as f64,
         };
-        let center = points.iter().fold(Vec3::ZERO, |sum, &p| sum + p) / points.len() as f64;
+        let center = data.middle;
         for face in faces {
             let face = face.as_ref();
             if face.len() < 3 {
@@ -116,6 +118,11 @@ impl Convex {
     /// Volume in cubic metres.
     pub fn volume(&self) -> f64 {
         self.data.volume
+    }
+
+    /// The mean of the corners, a point within.
+    pub fn middle(&self) -> Vec3 {
+        self.data.middle
     }
 
     /// The corner furthest along `d`.

@@ -8,6 +8,7 @@ mod hull;
 mod plane;
 mod ray;
 mod sphere;
+mod trimesh;
 
 pub use capsule::Capsule;
 pub use convex::Convex;
@@ -16,6 +17,7 @@ pub use cylinder::Cylinder;
 pub use plane::Plane;
 pub use ray::Ray;
 pub use sphere::Sphere;
+pub use trimesh::{Neighbour, TriMesh};
 
 use crate::Frame;
 use core::fmt;
@@ -41,6 +43,8 @@ pub enum Shape {
     Ray(Ray),
     /// A convex polyhedron.
     Convex(Convex),
+    /// A surface of triangles.
+    TriMesh(TriMesh),
 }
 
 /// The kind of a shape: its row and column in the pair matrix.
@@ -61,6 +65,8 @@ pub enum ShapeKind {
     Ray,
     /// [`Convex`].
     Convex,
+    /// [`TriMesh`].
+    TriMesh,
 }
 
 impl Shape {
@@ -74,6 +80,7 @@ impl Shape {
             Self::Plane(_) => ShapeKind::Plane,
             Self::Ray(_) => ShapeKind::Ray,
             Self::Convex(_) => ShapeKind::Convex,
+            Self::TriMesh(_) => ShapeKind::TriMesh,
         }
     }
 
@@ -92,6 +99,7 @@ impl Shape {
             Self::Plane(s) => s.aabb(),
             Self::Ray(s) => s.aabb(frame),
             Self::Convex(s) => s.aabb(frame),
+            Self::TriMesh(s) => s.aabb(frame),
         }
     }
 
@@ -105,6 +113,7 @@ impl Shape {
             Self::Plane(_) => f64::INFINITY,
             Self::Ray(_) => 0.0,
             Self::Convex(s) => s.volume(),
+            Self::TriMesh(s) => s.volume(),
         }
     }
 
@@ -121,7 +130,7 @@ impl Shape {
             Self::Cuboid(s) => s.sides().to_array().contains(&0.0),
             Self::Capsule(s) => s.radius() == 0.0,
             Self::Cylinder(s) => s.radius() == 0.0 || s.length() == 0.0,
-            Self::Plane(_) | Self::Ray(_) | Self::Convex(_) => false,
+            Self::Plane(_) | Self::Ray(_) | Self::Convex(_) | Self::TriMesh(_) => false,
         }
     }
 }

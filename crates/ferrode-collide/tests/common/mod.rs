@@ -46,6 +46,15 @@ impl Record {
         self.files.iter().filter_map(move |f| f[name].as_array()).flatten()
     }
 
+    fn mesh(&self, name: &str) -> TriMesh {
+        let mesh = self.list("meshes").find(|h| h["name"] == name).unwrap_or_else(|| panic!("{name}"));
+        let vertices = mesh["vertices"].as_array().unwrap().iter().map(vector).collect();
+        let number = |n: &Value| n.as_u64().unwrap() as u32;
+        let triangle = |t: &Value| [number(&t[0]), number(&t[1]), number(&t[2])];
+        let triangles = mesh["triangles"].as_array().unwrap().iter().map(triangle).collect();
+        TriMesh::new(vertices, triangles).unwrap()
+    }
+
     fn hull(&self, name: &str) -> Convex {
         let hull = self.list("hulls").find(|h| h["name"] == name).unwrap_or_else(|| panic!("{name}"));
         let points: Vec<_> = hull["points"].as_array().unwrap().iter().map(vector).collect();
@@ -87,6 +96,7 @@ impl Record {
                 return Some((ray.into(), frame));
             }
             "convex" => self.hull(g["hull"].as_str()?).into(),
+            "trimesh" => self.mesh(g["mesh"].as_str()?).into(),
             _ => return None,
         };
         let r: Vec<f64> = g["R"].as_array()?.iter().map(number).collect();

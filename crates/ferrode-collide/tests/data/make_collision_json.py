@@ -47,4 +47,12 @@ write(
     },
 )
 write("convex.json", {"hulls": full["hulls"], "cases": list(cases(PRIMITIVES + ["convex"], ["convex"], 0.6))})
+write(
+    "mesh.json",
+    {
+        "meshes": full["meshes"],
+        "cases": list(cases(["sphere", "plane", "ray", "trimesh"], ["trimesh"], 1)),
+        "ray_trimesh_options": full["ray_trimesh_options"],
+    },
+)
 write("spaces.json", {"broadphase": full["broadphase"]})

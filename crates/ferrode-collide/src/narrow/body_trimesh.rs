@@ -1,0 +1,41 @@
+use super::reduce::reduce;
+use super::support::Body;
+use super::triangle::{Facet, body_facet, bounds};
+use crate::{Contacts, Frame, Shape, TriMesh};
+
+impl TriMesh {
+    /// Triangle `i` in the mesh's coordinates; `None` if it has no area.
+    pub(crate) fn facet(&self, i: u32) -> Option<Facet> {
+        let normal = self.normal(i);
+        (normal.length_squared() > 0.0).then(|| Facet {
+            corners: self.corners(i),
+            normal,
+            neighbours: *self.neighbours(i),
+            index: i as i32,
+        })
+    }
+}
+
+/// Any convex shape of finite size and a mesh: the contacts of all triangles, without doubles.
+///
+/// `side2` of a contact is the triangle. Where there are more contacts than wanted, the deepest and the most different
+/// stay.
+pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
+    // All in the mesh's coordinates.
+    let local = Frame::new(fm.point_to_local(fa.position), fm.rotation.transpose() * fa.rotation);
+    let Some(body) = Body::of(shape, &local, ferrode_math::Vec3::ZERO) else { return };
+    let middle = body.middle();
+    {
+        let mut all = out.all();
+        mesh.tree().query(&bounds(&body), |i| {
+            if let Some(facet) = mesh.facet(i) {
+                body_facet(&body, middle, &facet, &mut all);
+            }
+        });
+    }
+    reduce(out, body.reach());
+    for c in out.added() {
+        c.point.position = fm.point_to_world(c.point.position);
+        c.point.normal = fm.vector_to_world(c.point.normal);
+    }
+}

@@ -1,0 +1,54 @@
+use super::triangle::Facet;
+use crate::space::tree::segment_meets;
+use crate::{Contacts, Frame, GeomContact, Ray, TriMesh};
+use ferrode_math::Vec3;
+
+/// A ray and a mesh: all hits, nearest first, or as the ray's options say; `side2` is the triangle.
+///
+/// Normals are the triangles' own, whichever side is hit. With `first_contact` or `closest_hit` only the nearest hit is
+/// reported; `backface_cull` passes through triangles seen from behind.
+pub fn ray_trimesh(ray: &Ray, fr: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
+    let (o, u) = ray.line(fr);
+    let (start, direction) = (fm.point_to_local(o), fm.vector_to_local(u));
+    let span = direction * ray.length();
+    let inverse = Vec3::new(1.0 / span.x, 1.0 / span.y, 1.0 / span.z);
+    {
+        let mut all = out.all();
+        mesh.tree().walk(
+            |aabb| segment_meets(aabb, start, inverse),
+            |i| {
+                if let Some(facet) = mesh.facet(i)
+                    && !(ray.backface_cull && facet.normal.dot(direction) > 0.0)
+                    && let Some(alpha) = ray_facet(start, direction, ray.length(), &facet)
+                {
+                    let mut c = GeomContact::new(o + u * alpha, fm.vector_to_world(facet.normal), alpha);
+                    c.side2 = facet.index;
+                    all.push_contact(c);
+                }
+                true
+            },
+        );
+    }
+    let wanted = if ray.first_contact || ray.closest_hit { 1 } else { out.capacity() };
+    out.added().sort_unstable_by(|a, b| a.point.depth.total_cmp(&b.point.depth).then(a.side2.cmp(&b.side2)));
+    let found = out.len();
+    out.truncate(found.min(wanted));
+}
+
+/// Where a ray meets a triangle, from either side.
+///
+/// The signs of the volumes that the ray spans with the edges decide; neighbours compute the same volume for their
+/// common edge, so that no ray slips between them.
+pub(super) fn ray_facet(start: Vec3, direction: Vec3, length: f64, facet: &Facet) -> Option<f64> {
+    let slope = facet.normal.dot(direction);
+    if slope == 0.0 {
+        return None;
+    }
+    let [a, b, c] = facet.corners.map(|p| p - start);
+    let sides = [direction.dot(a.cross(b)), direction.dot(b.cross(c)), direction.dot(c.cross(a))];
+    if !(sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0)) {
+        return None;
+    }
+    let alpha = facet.normal.dot(a) / slope;
+    (alpha >= 0.0 && alpha <= length).then_some(alpha)
+}

@@ -1,0 +1,56 @@
+//! From the many contacts of a surface to the few that matter.
+
+use crate::{Contacts, GeomContact};
+
+/// Contacts of one place and normal are one: the deeper stays. Then, if there are more than wanted, the deepest and
+/// those that differ most, in place and normal, from the ones that stay. `size` is that of the smaller body.
+pub(crate) fn reduce(out: &mut Contacts<'_>, size: f64) {
+    let near = 1e-4 * size;
+    let wanted = out.capacity();
+    let list = out.added();
+    let mut count = 0;
+    for i in 0..list.len() {
+        let c = list[i];
+        let twin = list[..count].iter_mut().find(|k| {
+            (k.point.position - c.point.position).length_squared() < near * near
+                && k.point.normal.dot(c.point.normal) > 1.0 - 1e-4
+        });
+        match twin {
+            Some(k) => {
+                if c.point.depth > k.point.depth {
+                    *k = c;
+                }
+            }
+            None => {
+                list[count] = c;
+                count += 1;
+            }
+        }
+    }
+    if count > wanted {
+        spread(&mut list[..count], wanted, size);
+        count = wanted;
+    }
+    out.truncate(count);
+}
+
+/// Brings the `wanted` contacts to the front.
+fn spread(list: &mut [GeomContact], wanted: usize, size: f64) {
+    let deepest =
+        (0..list.len()).fold(0, |b, i| if list[i].point.depth > list[b].point.depth { i } else { b });
+    list.swap(0, deepest);
+    let difference = |a: &GeomContact, b: &GeomContact| {
+        (a.point.position - b.point.position).length_squared()
+            + (a.point.normal - b.point.normal).length_squared() * size * size
+    };
+    for chosen in 1..wanted {
+        let mut best = (f64::NEG_INFINITY, chosen);
+        for i in chosen..list.len() {
+            let least = list[..chosen].iter().map(|c| difference(c, &list[i])).fold(f64::INFINITY, f64::min);
+            if least > best.0 {
+                best = (least, i);
+            }
+        }
+        list.swap(chosen, best.1);
+    }
+}

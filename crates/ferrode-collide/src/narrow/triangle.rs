@@ -1,0 +1,150 @@
+//! A triangle of a surface against a body.
+
+use super::convex::{Touch, touch};
+use super::manifold::{add_face_contacts, add_manifold};
+use super::support::Body;
+use crate::shape::Neighbour;
+use crate::{Contacts, GeomContact};
+use ferrode_math::{Aabb, Vec3};
+
+/// A triangle with its front, and what lies beyond its edges.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Facet {
+    pub corners: [Vec3; 3],
+    /// Unit.
+    pub normal: Vec3,
+    pub neighbours: [Neighbour; 3],
+    /// Its number in the surface.
+    pub index: i32,
+}
+
+impl Facet {
+    /// Height of a point over the triangle's plane.
+    #[inline]
+    pub fn height(&self, p: Vec3) -> f64 {
+        self.normal.dot(p - self.corners[0])
+    }
+
+    /// The triangle's point nearest to `p`.
+    pub fn nearest(&self, p: Vec3) -> Vec3 {
+        let [a, b, c] = self.corners.map(|x| x - p);
+        let (places, weights, n) = super::gjk::nearest_of_triangle(a, b, c);
+        let mut q = Vec3::ZERO;
+        for k in 0..n {
+            q += self.corners[places[k]] * weights[k];
+        }
+        q
+    }
+
+    /// The unit direction in the plane that leads out over edge `e`.
+    pub fn outward(&self, e: usize) -> Vec3 {
+        (self.corners[(e + 1) % 3] - self.corners[e]).cross(self.normal).normalized_or(Vec3::ZERO)
+    }
+}
+
+/// Cosines nearer than this are one direction.
+const SAME: f64 = 1e-6;
+
+/// Adds the contacts of a body with a triangle, normals into the body, if the body's middle is before the triangle.
+///
+/// A body that slides over a surface must not be caught by the edges within it. So a normal at an edge is kept only if
+/// it lies between those of the two triangles there; else the triangle's own normal counts, with the part of the body's
+/// face that is over the triangle.
+pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Contacts<'_>) {
+    let n = facet.normal;
+    if facet.height(middle) < 0.0 || facet.height(body.support(-n)) > body.margin {
+        return;
+    }
+    let triangle = Body::triangle(facet.corners);
+    let first = out.len();
+    match touch(body, &triangle) {
+        Some(t) if t.normal.dot(n) > 1.0 - SAME => {
+            add_manifold(body, &triangle, &Touch { normal: n, ..t }, Vec3::ZERO, out);
+        }
+        Some(t) if allowed(facet, &t) => add_manifold(body, &triangle, &t, Vec3::ZERO, out),
+        Some(_) => add_face_contacts(body, &triangle, n, out),
+        None => add_hidden_contact(body, middle, facet, out),
+    }
+    let mut kept = first;
+    for i in first..out.len() {
+        let mut c = out.added()[i];
+        if !nearer_elsewhere(facet, middle, &c) {
+            c.side2 = facet.index;
+            out.added()[kept] = c;
+            kept += 1;
+        }
+    }
+    out.truncate(kept);
+}
+
+/// The lowest point of a body that entered the surface over a neighbour and so does not meet this triangle, although it
+/// lies below it.
+fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Contacts<'_>) {
+    let n = facet.normal;
+    let lowest = body.support(-n) - n * body.margin;
+    let (above, depth) = (facet.height(middle), -facet.height(lowest));
+    if depth <= 0.0 {
+        return;
+    }
+    let entry = middle + (lowest - middle) * (above / (above + depth));
+    for e in 0..3 {
+        let outward = facet.outward(e);
+        let beyond = |p: Vec3| outward.dot(p - facet.corners[e]) > 0.0;
+        if beyond(lowest) || (beyond(entry) && facet.neighbours[e] != Neighbour::FlatOrConcave) {
+            return;
+        }
+    }
+    out.push(lowest + n * (0.5 * depth), n, depth);
+}
+
+/// Whether the point of the body lies less deep behind the triangle beyond a convex edge, which also has the body's
+/// middle before it: then that one pushes it out.
+fn nearer_elsewhere(facet: &Facet, middle: Vec3, c: &GeomContact) -> bool {
+    if c.point.normal.dot(facet.normal) < 1.0 - SAME {
+        return false;
+    }
+    let point = c.point.position - c.point.normal * (0.5 * c.point.depth);
+    (0..3).any(|e| match facet.neighbours[e] {
+        Neighbour::Convex(other) => {
+            let depth = other.dot(facet.corners[e] - point);
+            depth >= 0.0 && depth < c.point.depth * (1.0 - 1e-6) && other.dot(middle - facet.corners[e]) > 0.0
+        }
+        _ => false,
+    })
+}
+
+/// Whether the normal of a touch is one that the surface has at that point.
+fn allowed(facet: &Facet, t: &Touch) -> bool {
+    let along = t.normal.dot(facet.normal);
+    if along < -SAME {
+        return false;
+    }
+    let scale =
+        (facet.corners[1] - facet.corners[0]).abs_max() + (facet.corners[2] - facet.corners[0]).abs_max();
+    for e in 0..3 {
+        let out = facet.outward(e);
+        // How far inside the edge the point is.
+        if out.dot(facet.corners[e] - t.b) > 1e-6 * scale {
+            continue;
+        }
+        match facet.neighbours[e] {
+            Neighbour::None => {}
+            Neighbour::FlatOrConcave => return false,
+            Neighbour::Convex(other) => {
+                if t.normal.dot(out) < -SAME || along < other.dot(facet.normal) - SAME {
+                    return false;
+                }
+            }
+        }
+    }
+    true
+}
+
+/// The box around a body, in the coordinates it is placed in.
+pub(crate) fn bounds(body: &Body<'_>) -> Aabb {
+    let along = |d: Vec3| body.support(d).dot(d) + body.margin;
+    Aabb::new(
+        Vec3::new(-along(-Vec3::X), -along(-Vec3::Y), -along(-Vec3::Z)),
+        Vec3::new(along(Vec3::X), along(Vec3::Y), along(Vec3::Z)),
+    )
+}

@@ -1,0 +1,24 @@
+use super::reduce::reduce;
+use crate::{Contacts, Frame, GeomContact, Plane, TriMesh};
+
+/// A mesh and a half-space: the vertices below the plane, `side1` the first triangle they belong to.
+pub fn trimesh_plane(mesh: &TriMesh, fm: &Frame, plane: &Plane, _: &Frame, out: &mut Contacts<'_>) {
+    // The plane in the mesh's coordinates.
+    let n = fm.vector_to_local(plane.normal());
+    let d = plane.depth(fm.position);
+    {
+        let mut all = out.all();
+        for (i, t) in mesh.triangles().iter().enumerate() {
+            for &v in t {
+                let p = mesh.vertices()[v as usize];
+                let depth = d - n.dot(p);
+                if depth > 0.0 && mesh.first_triangle(v) == Some(i as u32) {
+                    let mut c = GeomContact::new(fm.point_to_world(p), plane.normal(), depth);
+                    c.side1 = i as i32;
+                    all.push_contact(c);
+                }
+            }
+        }
+    }
+    reduce(out, mesh.bounds().extent().abs_max());
+}

@@ -1,0 +1,266 @@
+use super::{LARGEST, ShapeError};
+use crate::Frame;
+use crate::space::tree::AabbTree;
+use ferrode_math::{Aabb, Vec3};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A surface of triangles, counter-clockwise as seen from outside. Copies share their data.
+///
+/// The surface has one side: bodies whose centre is behind a triangle pass through it.
+#[derive(Clone, Debug)]
+pub struct TriMesh {
+    data: Arc<MeshData>,
+}
+
+#[derive(Debug)]
+struct MeshData {
+    vertices: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    /// Zero for a triangle without area, which touches nothing.
+    normals: Vec<Vec3>,
+    neighbours: Vec<[Neighbour; 3]>,
+    /// The first triangle at each vertex.
+    first_triangle: Vec<u32>,
+    tree: AabbTree,
+    bounds: Aabb,
+}
+
+/// What lies beyond an edge of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Neighbour {
+    /// Nothing.
+    None,
+    /// A triangle in the same plane, or one that rises: nothing can touch the edge without touching a triangle.
+    FlatOrConcave,
+    /// A triangle that falls away, with this normal.
+    Convex(Vec3),
+}
+
+impl PartialEq for TriMesh {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.data, &other.data)
+            || (self.data.vertices == other.data.vertices && self.data.triangles == other.data.triangles)
+    }
+}
+
+/// Sine of the angle up to which two triangles are one plane.
+const FLAT: f64 = 1e-6;
+
+impl TriMesh {
+    /// A mesh of the given vertices and triangles. Vertices at the same place count as one where triangles meet.
+    pub fn new(vertices: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self, ShapeError> {
+        if triangles.is_empty() {
+            return Err(ShapeError { what: "number of triangles of a mesh", value: 0.0 });
+        }
+        if let Some(p) = vertices.iter().find(|p| !(p.abs_max() <= LARGEST)) {
+            return Err(ShapeError { what: "coordinate of a mesh's vertex", value: p.abs_max() });
+        }
+        let bad = triangles.iter().flatten().find(|&&i| i as usize >= vertices.len());
+        if let Some(bad) = bad {
+            return Err(ShapeError { what: "vertex number of a triangle", value: f64::from(*bad) });
+        }
+        let at = |i: u32| vertices[i as usize];
+        let normal = |t: &[u32; 3]| {
+            let (e, f) = (at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
+            let n = e.cross(f);
+            if n.length() > 1e-14 * e.length() * f.length() {
+                n.normalized_or(Vec3::ZERO)
+            } else {
+                Vec3::ZERO
+            }
+        };
+        let normals: Vec<Vec3> = triangles.iter().map(normal).collect();
+        let neighbours = neighbours(&vertices, &triangles, &normals);
+        let mut first_triangle = vec![u32::MAX; vertices.len()];
+        for (i, t) in triangles.iter().enumerate().rev() {
+            for &v in t {
+                first_triangle[v as usize] = i as u32;
+            }
+        }
+        let mut bounds = Aabb::EMPTY;
+        let boxes: Vec<Aabb> = triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(at);
+                let aabb = Aabb::new(a.min(b).min(c), a.max(b).max(c));
+                bounds = bounds.union(&aabb);
+                aabb
+            })
+            .collect();
+        let tree = AabbTree::build(&boxes);
+        Ok(Self {
+            data: Arc::new(MeshData {
+                vertices,
+                triangles,
+                normals,
+                neighbours,
+                first_triangle,
+                tree,
+                bounds,
+            }),
+        })
+    }
+
+    /// A mesh of loose triangles, as an STL file has them.
+    pub fn from_triangles(soup: &[[Vec3; 3]]) -> Result<Self, ShapeError> {
+        let mut vertices = Vec::new();
+        let mut numbers = BTreeMap::new();
+        let mut number = |p: Vec3| {
+            *numbers.entry(place(p)).or_insert_with(|| {
+                vertices.push(p);
+                (vertices.len() - 1) as u32
+            })
+        };
+        let triangles = soup.iter().map(|t| t.map(&mut number)).collect();
+        Self::new(vertices, triangles)
+    }
+
+    /// The vertices.
+    pub fn vertices(&self) -> &[Vec3] {
+        &self.data.vertices
+    }
+
+    /// The vertex numbers of the triangles.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.data.triangles
+    }
+
+    /// The corners of triangle `i`.
+    #[inline]
+    pub fn corners(&self, i: u32) -> [Vec3; 3] {
+        self.data.triangles[i as usize].map(|v| self.data.vertices[v as usize])
+    }
+
+    /// Unit normal of triangle `i`; zero if it has no area.
+    #[inline]
+    pub fn normal(&self, i: u32) -> Vec3 {
+        self.data.normals[i as usize]
+    }
+
+    /// What lies beyond the edges 0–1, 1–2 and 2–0 of triangle `i`.
+    #[inline]
+    pub fn neighbours(&self, i: u32) -> &[Neighbour; 3] {
+        &self.data.neighbours[i as usize]
+    }
+
+    /// The first triangle that has vertex `v`, if any has.
+    pub fn first_triangle(&self, v: u32) -> Option<u32> {
+        Some(self.data.first_triangle[v as usize]).filter(|&t| t != u32::MAX)
+    }
+
+    /// The boxes of the triangles.
+    pub fn tree(&self) -> &AabbTree {
+        &self.data.tree
+    }
+
+    /// The local box around all triangles.
+    pub fn bounds(&self) -> &Aabb {
+        &self.data.bounds
+    }
+
+    /// Volume in cubic metres, if the surface is closed.
+    pub fn volume(&self) -> f64 {
+        let triangle = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| self.data.vertices[v as usize]);
+            a.dot(b.cross(c)) / 6.0
+        };
+        self.data.triangles.iter().map(triangle).sum()
+    }
+
+    /// The world box around the local box: ODE's, not the tightest.
+    pub fn aabb(&self, frame: &Frame) -> Aabb {
+        let (center, half) = (self.data.bounds.center(), self.data.bounds.extent() * 0.5);
+        let range = |i: usize| {
+            let r = frame.rotation.rows[i];
+            (r[0] * half.x).abs() + (r[1] * half.y).abs() + (r[2] * half.z).abs()
+        };
+        Aabb::from_center(frame.point_to_world(center), Vec3::new(range(0), range(1), range(2)))
+    }
+}
+
+/// A key that is the same for points at the same place: the two zeros are one.
+fn place(p: Vec3) -> [u64; 3] {
+    p.to_array().map(|x| (x + 0.0).to_bits())
+}
+
+fn neighbours(vertices: &[Vec3], triangles: &[[u32; 3]], normals: &[Vec3]) -> Vec<[Neighbour; 3]> {
+    let mut numbers = BTreeMap::new();
+    let place_of: Vec<u32> = vertices
+        .iter()
+        .map(|&p| {
+            let next = numbers.len() as u32;
+            *numbers.entry(place(p)).or_insert(next)
+        })
+        .collect();
+    // All edges with the same ends side by side: (ends, triangle, edge).
+    let mut edges: Vec<(u32, u32, u32, u8)> = Vec::with_capacity(3 * triangles.len());
+    for (i, t) in triangles.iter().enumerate() {
+        for e in 0..3 {
+            let (a, b) = (place_of[t[e] as usize], place_of[t[(e + 1) % 3] as usize]);
+            edges.push((a.min(b), a.max(b), i as u32, e as u8));
+        }
+    }
+    edges.sort_unstable();
+    let mut found = vec![[Neighbour::None; 3]; triangles.len()];
+    for pair in edges.windows(2) {
+        let [(a0, b0, t0, e0), (a1, b1, t1, e1)] = [pair[0], pair[1]];
+        if (a0, b0) != (a1, b1) || normals[t0 as usize] == Vec3::ZERO || normals[t1 as usize] == Vec3::ZERO {
+            continue;
+        }
+        for (t, e, other, f) in [(t0, e0, t1, e1), (t1, e1, t0, e0)] {
+            let corners = triangles[t as usize].map(|v| vertices[v as usize]);
+            let apex = vertices[triangles[other as usize][(usize::from(f) + 2) % 3] as usize];
+            let start = corners[usize::from(e)];
+            let along = (corners[(usize::from(e) + 1) % 3] - start).normalized_or(Vec3::X);
+            let across = (apex - start) - along * along.dot(apex - start);
+            let height = normals[t as usize].dot(across);
+            found[t as usize][usize::from(e)] = if height < -FLAT * across.length() {
+                Neighbour::Convex(normals[other as usize])
+            } else {
+                Neighbour::FlatOrConcave
+            };
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The unit cube's surface.
+    fn cube() -> TriMesh {
+        let vertices =
+            (0..8u8).map(|i| Vec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)));
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).collect();
+        TriMesh::new(vertices.collect(), triangles).unwrap()
+    }
+
+    #[test]
+    fn edges_of_a_cube() {
+        let mesh = cube();
+        assert!((mesh.volume() - 1.0).abs() < 1e-15);
+        for i in 0..12 {
+            let n = mesh.neighbours(i);
+            assert_eq!(n.iter().filter(|e| matches!(e, Neighbour::Convex(_))).count(), 2);
+            assert_eq!(n.iter().filter(|e| **e == Neighbour::FlatOrConcave).count(), 1);
+        }
+        // Loose triangles find each other again.
+        let soup: Vec<_> = (0..12).map(|i| mesh.corners(i)).collect();
+        let welded = TriMesh::from_triangles(&soup).unwrap();
+        assert_eq!(welded.vertices().len(), 8);
+        assert_eq!(welded.neighbours(0), mesh.neighbours(0));
+    }
+
+    #[test]
+    fn bad_meshes_are_errors() {
+        assert!(TriMesh::new(vec![Vec3::ZERO; 3], vec![]).is_err());
+        assert!(TriMesh::new(vec![Vec3::ZERO; 3], vec![[0, 1, 3]]).is_err());
+        assert!(TriMesh::new(vec![Vec3::X * f64::NAN; 3], vec![[0, 1, 2]]).is_err());
+        // A triangle without area is kept, but has no normal.
+        let line = TriMesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::X * 2.0], vec![[0, 1, 2]]).unwrap();
+        assert_eq!(line.normal(0), Vec3::ZERO);
+    }
+}

@@ -1,0 +1,176 @@
+//! Meshes against shapes whose contacts are known.
+
+mod common;
+
+use common::{Record, contacts};
+use ferrode_collide::narrow::{collide, collide_frames};
+use ferrode_collide::*;
+use ferrode_math::{Pose, Quat, Vec3};
+use proptest::prelude::*;
+
+/// A flat grid of 2 × `n` × `n` triangles, one metre wide each, at z = 0.
+fn grid(n: u32) -> TriMesh {
+    let at = |i: u32, j: u32| {
+        Vec3::new(f64::from(i), f64::from(j), 0.0) - Vec3::new(1.0, 1.0, 0.0) * f64::from(n) * 0.5
+    };
+    let vertices = (0..=n).flat_map(|j| (0..=n).map(move |i| at(i, j))).collect();
+    let number = |i: u32, j: u32| i + j * (n + 1);
+    let mut triangles = Vec::new();
+    for j in 0..n {
+        for i in 0..n {
+            let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i, j + 1), number(i + 1, j + 1)];
+            triangles.extend([[a, b, d], [a, d, c]]);
+        }
+    }
+    TriMesh::new(vertices, triangles).unwrap()
+}
+
+/// A box as a mesh.
+fn box_mesh(half: Vec3) -> TriMesh {
+    let corner = |i: u32| {
+        let s = |bit: u32, h: f64| if i & bit != 0 { h } else { -h };
+        Vec3::new(s(1, half.x), s(2, half.y), s(4, half.z))
+    };
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).collect();
+    TriMesh::new((0..8).map(corner).collect(), triangles).unwrap()
+}
+
+/// A convex shape of about half a metre.
+fn shape() -> impl Strategy<Value = Shape> {
+    let size = 0.1..0.5f64;
+    let hull = |v: Vec<[f64; 3]>| {
+        let points: Vec<_> = v.into_iter().map(Vec3::from_array).collect();
+        Convex::from_points(&points).ok().map(Shape::from)
+    };
+    prop_oneof![
+        size.clone().prop_map(|r| Sphere::new(r).unwrap().into()),
+        prop::array::uniform3(size.clone()).prop_map(|s| Cuboid::new(Vec3::from_array(s)).unwrap().into()),
+        (size.clone(), size.clone()).prop_map(|(r, l)| Capsule::new(r, l).unwrap().into()),
+        (size.clone(), size.clone()).prop_map(|(r, l)| Cylinder::new(r, l).unwrap().into()),
+        prop::collection::vec(prop::array::uniform3(-0.4..0.4f64), 8..20).prop_filter_map("flat", hull),
+    ]
+}
+
+fn turn() -> impl Strategy<Value = Quat> {
+    prop::array::uniform4(-1.0..1.0f64)
+        .prop_map(|q| Quat::from_array(q).normalized().unwrap_or(Quat::IDENTITY))
+}
+
+/// `shape` turned and set so that its lowest point is `depth` below `ground`, a box's upper face at z = 0.
+fn sunk(shape: &Shape, turn: Quat, x: f64, y: f64, depth: f64) -> Pose {
+    let low = shape.aabb(&Pose::new(Vec3::ZERO, turn)).min.z;
+    Pose::new(Vec3::new(x, y, -low - depth), turn)
+}
+
+fn list(a: (&Shape, &Pose), b: (&Shape, &Pose)) -> Vec<GeomContact> {
+    let mut out = Vec::new();
+    collide(a, b, CollideOptions::new(16), &mut out);
+    out
+}
+
+fn deepest(list: &[GeomContact]) -> f64 {
+    list.iter().map(|c| c.point.depth).fold(f64::NEG_INFINITY, f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// No edge within a flat surface catches a body: every normal is the surface's, and the depth that of the body's
+    /// lowest point.
+    #[test]
+    fn a_flat_mesh_is_a_plane(shape in shape(), q in turn(), x in -2.0..2.0f64, y in -2.0..2.0f64, depth in 0.001..0.05f64) {
+        let ground = Shape::from(grid(8));
+        let at = sunk(&shape, q, x, y, depth);
+        // A surface has no inside: what has sunk beyond its middle is through.
+        if let Shape::Convex(hull) = &shape {
+            prop_assume!(at.transform_point(hull.middle()).z > 0.0);
+        }
+        let found = list((&shape, &at), (&ground, &Pose::IDENTITY));
+        prop_assert!(!found.is_empty());
+        for c in &found {
+            prop_assert!((c.point.normal - Vec3::Z).length() < 1e-9, "{found:?}");
+            prop_assert!(c.side1 == -1 && c.side2 >= 0);
+        }
+        prop_assert!((deepest(&found) - depth).abs() < 1e-6, "{depth} {found:?}");
+        let swapped = list((&ground, &Pose::IDENTITY), (&shape, &at));
+        prop_assert_eq!(swapped.len(), found.len());
+        for (s, f) in swapped.iter().zip(&found) {
+            prop_assert_eq!(s.swapped(), *f);
+        }
+    }
+
+    /// A box as a mesh and as itself, touched lightly from above, at the faces, edges and corners.
+    #[test]
+    fn a_box_mesh_is_a_box(shape in shape(), q in turn(), x in -1.2..1.2f64, y in -1.2..1.2f64, depth in 0.001..0.01f64) {
+        let half = Vec3::new(1.0, 1.0, 0.5);
+        let (mesh, solid) = (Shape::from(box_mesh(half)), Shape::from(Cuboid::from_half_sides(half).unwrap()));
+        let below = Pose::from_position(Vec3::new(0.0, 0.0, -0.5));
+        let at = sunk(&shape, q, x, y, depth);
+        let (on_mesh, on_box) = (list((&shape, &at), (&mesh, &below)), list((&shape, &at), (&solid, &below)));
+        // Where hardly anything overlaps rounding may decide.
+        if deepest(&on_box) > 1e-4 || deepest(&on_mesh) > 1e-4 {
+            prop_assert!(!on_mesh.is_empty() && !on_box.is_empty(), "{on_mesh:?}\n{on_box:?}");
+            // The box pairs prefer faces to edges by 5 %; a ball has the part of its depth along each normal.
+            let (m, b) = (deepest(&on_mesh), deepest(&on_box));
+            prop_assert!(m < 1.06 * b + 1e-6 && m > 0.5 * b, "{m} {b}\n{on_mesh:?}\n{on_box:?}");
+        }
+    }
+
+    /// A mesh upon a mesh: the corners of a box on a flat grid.
+    #[test]
+    fn a_box_mesh_stands_on_a_grid(yaw in 0.0..6.0f64, x in -2.0..2.0f64, y in -2.0..2.0f64, depth in 0.001..0.05f64) {
+        let ground = Shape::from(grid(8));
+        let cube = Shape::from(box_mesh(Vec3::new(0.4, 0.3, 0.5)));
+        let at = Pose::new(Vec3::new(x, y, 0.5 - depth), Quat::from_axis_angle(Vec3::Z, yaw));
+        let found = list((&cube, &at), (&ground, &Pose::IDENTITY));
+        for corner in [[0.4, 0.3], [0.4, -0.3], [-0.4, 0.3], [-0.4, -0.3]] {
+            let p = at.transform_point(Vec3::new(corner[0], corner[1], -0.5));
+            prop_assert!(found.iter().any(|c| (c.point.position - p).length() < 0.06), "{p:?} {found:?}");
+        }
+        for c in &found {
+            prop_assert!((c.point.normal - Vec3::Z).length() < 1e-9, "{found:?}");
+            prop_assert!(c.point.depth < depth + 1e-9, "{found:?}");
+        }
+        prop_assert!((deepest(&found) - depth).abs() < 1e-9);
+    }
+}
+
+/// Balls, planes and rays on meshes: libode's contacts, as sets, where the number wanted cut none.
+#[test]
+fn simple_pairs_are_libodes() {
+    let record = Record::open(&["mesh.json"]);
+    let (mut replayed, mut cut) = (0, 0);
+    for case in record.list("cases") {
+        let classes = [&case["a"]["class"], &case["b"]["class"]].map(|c| c.as_str().unwrap());
+        if !classes.contains(&"trimesh") || !classes.iter().any(|c| ["sphere", "plane", "ray"].contains(c)) {
+            continue;
+        }
+        let (Some(a), Some(b)) = (record.geom(&case["a"]), record.geom(&case["b"])) else { continue };
+        let want = contacts(case);
+        let wanted = case["flags"].as_u64().unwrap() as usize & 0xffff;
+        let mut got = Vec::new();
+        collide_frames((&a.0, &a.1), (&b.0, &b.1), CollideOptions::default(), &mut got);
+        replayed += 1;
+        let first = ["a", "b"].iter().any(|side| case[side]["first_contact"] == 1);
+        if want.len() >= wanted || (first && !want.is_empty()) {
+            cut += 1;
+            assert!(!got.is_empty(), "{case}");
+            continue;
+        }
+        // Libode's mesh is of single precision.
+        let near = |g: &GeomContact, w: &GeomContact| {
+            (g.point.position - w.point.position).abs_max() < 1e-4
+                && (g.point.normal - w.point.normal).abs_max() < 1e-4
+                && (g.point.depth - w.point.depth).abs() < 1e-4
+        };
+        for w in &want {
+            assert!(got.iter().any(|g| near(g, w)), "{case}\n{got:?}");
+        }
+        for g in &got {
+            assert!(want.iter().any(|w| near(g, w)), "{case}\n{got:?}");
+        }
+    }
+    println!("{replayed} cases, {cut} of them cut");
+    assert!(replayed > 30 && 2 * cut < replayed, "{replayed} {cut}");
+}
