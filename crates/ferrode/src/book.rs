@@ -35,5 +35,9 @@ chapters! {
     JointDhinge = "joints/dhinge.md";
     JointTransmission = "joints/transmission.md";
     JointNull = "joints/null.md";
+    StepFast = "stepfast.md";
+    Support = "support.md";
+    Collision = "collision.md";
+    Faq = "faq.md";
     Migrating = "migrating.md";
 }
