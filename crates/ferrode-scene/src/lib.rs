@@ -50,6 +50,11 @@ mod xml;
 
 use std::path::{Path, PathBuf};
 
+/// The book's chapter on files, so that its code is compiled and run. The packaged crate does not contain it.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/book/files.md")]
+struct Book;
+
 pub use build::{BuildOptions, NamedJoint, NamedLink, NamedWorld, build};
 pub use description::Scene;
 pub use error::{Result, SceneError, Warning, WarningKind};
