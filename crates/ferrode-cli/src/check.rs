@@ -33,6 +33,8 @@ struct Tree<'a> {
     scene: &'a Scene,
     /// Joints by the link they hang on; those on the world last.
     below: Vec<Vec<JointId>>,
+    /// By link: the joint that it hangs on.
+    hangs_on: Vec<Option<JointId>>,
     seen: Vec<bool>,
     text: String,
 }
@@ -47,13 +49,17 @@ struct Item {
 impl<'a> Tree<'a> {
     fn new(scene: &'a Scene) -> Self {
         let mut below = vec![Vec::new(); scene.links.len() + 1];
+        let mut hangs_on = vec![None; scene.links.len()];
         for (index, joint) in scene.joints.iter().enumerate() {
             let place = joint.parent.link().map_or(scene.links.len(), |link| link.0);
             if let Some(joints) = below.get_mut(place) {
                 joints.push(JointId(index));
             }
+            if let Some(link) = joint.child.link() {
+                hangs_on[link.0] = Some(JointId(index));
+            }
         }
-        Self { scene, below, seen: vec![false; scene.links.len()], text: String::new() }
+        Self { scene, below, hangs_on, seen: vec![false; scene.links.len()], text: String::new() }
     }
 
     fn print(mut self) -> String {
@@ -84,10 +90,13 @@ impl<'a> Tree<'a> {
         for index in 0..scene.models.len() {
             self.model(ModelId(index));
         }
+        // What hangs on the world is part of its model, but for joints that have the world as their child.
         let of_world = std::mem::take(&mut self.below[scene.links.len()]);
-        if !of_world.is_empty() {
-            self.line("\njoined to the world");
-            self.branches(&of_world);
+        let left: Vec<JointId> =
+            of_world.into_iter().filter(|id| !self.is_seen(scene.joints[id.0].child)).collect();
+        if !left.is_empty() {
+            self.line("joined to the world");
+            self.branches(&left);
         }
         // What is left hangs in a ring without a root.
         for index in 0..scene.links.len() {
@@ -104,18 +113,30 @@ impl<'a> Tree<'a> {
         let p = model.pose.position;
         let is_static = if model.is_static { ", static" } else { "" };
         self.line(&format!(
-            "\nmodel {} at {} {} {}{is_static}",
+            "model {} at {} {} {}{is_static}",
             model.name,
             round(p.x),
             round(p.y),
             round(p.z)
         ));
-        for (index, link) in scene.links.iter().enumerate() {
-            let hangs = scene.joints.iter().any(|joint| joint.child == Body::Link(LinkId(index)));
-            if link.model == id && !hangs {
+        for index in 0..scene.links.len() {
+            if scene.links[index].model == id && self.hangs_on[index].is_none() {
                 self.root(LinkId(index));
             }
         }
+        let of_world = self.below[scene.links.len()].clone();
+        let here = |joint: &JointId| {
+            scene.joints[joint.0].child.link().is_some_and(|link| scene.links[link.0].model == id)
+        };
+        let here: Vec<JointId> = of_world.into_iter().filter(here).collect();
+        if !here.is_empty() {
+            self.line("  world");
+            self.branches(&here);
+        }
+    }
+
+    fn is_seen(&self, body: Body) -> bool {
+        body.link().is_some_and(|link| self.seen[link.0])
     }
 
     fn root(&mut self, link: LinkId) {

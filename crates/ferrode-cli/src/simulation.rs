@@ -3,7 +3,7 @@
 use crate::args::{FileArgs, SetupArgs};
 use crate::exit::Failure;
 use crate::hold::Hold;
-use ferrode::{JointKey, Material, Plane, Pose, Step, Vec3, World};
+use ferrode::{GeomKey, JointKey, Material, Plane, Pose, Step, Vec3, World};
 use ferrode_scene::description::{JointId, LinkId};
 use ferrode_scene::{BuildOptions, LoadOptions, NamedWorld, Scene, Warning, WarningKind, build, load};
 
@@ -138,6 +138,19 @@ impl Simulation {
     pub fn joint_error(&self, joint: JointId) -> Option<(f64, f64)> {
         let error = self.named.world.joint_error(self.named.joint_key(joint)?).ok()?;
         Some((error.position, error.angle))
+    }
+
+    /// The names of the links that own the two geoms of the deepest contact of the last step.
+    pub fn deepest_contact(&self) -> Option<[String; 2]> {
+        let contacts = self.named.world.contacts();
+        let deepest = contacts.iter().max_by(|a, b| a.point.depth.total_cmp(&b.point.depth))?;
+        Some([deepest.first.geom, deepest.second.geom].map(|geom| self.owner_of(geom)))
+    }
+
+    fn owner_of(&self, geom: GeomKey) -> String {
+        let links = &self.scene().links;
+        let owner = (0..links.len()).find(|index| self.named.link_geoms(LinkId(*index)).contains(&geom));
+        owner.map_or_else(|| "the ground".to_owned(), |index| links[index].name.clone())
     }
 
     /// The unit of an axis' position: `rad` or `m`.

@@ -17,11 +17,14 @@ pub struct Largest {
 }
 
 impl Largest {
-    fn see(&mut self, value: f64, time: f64, index: usize) {
+    /// Whether this value is the largest now.
+    fn see(&mut self, value: f64, time: f64, index: usize) -> bool {
         // A value that is no number would hide behind every comparison: the worst there is.
-        if value > self.value || (value.is_nan() && !self.value.is_nan()) {
+        let larger = value > self.value || (value.is_nan() && !self.value.is_nan());
+        if larger {
             *self = Self { value, time, index };
         }
+        larger
     }
 }
 
@@ -47,6 +50,8 @@ pub struct Stats {
     pub energy_error: Largest,
     /// Deepest penetration, m.
     pub penetration: Largest,
+    /// The links that it is between.
+    pub penetration_between: Option<[String; 2]>,
     /// Largest distance between the two sides of a joint, m.
     pub joint_position_error: Largest,
     /// Largest angle between the two sides of a joint, rad.
@@ -81,7 +86,9 @@ impl Stats {
         self.step_times.push(u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX));
         self.contacts += step.contacts as u64;
         self.contacts_max = self.contacts_max.max(step.contacts);
-        self.penetration.see(step.max_depth, time, 0);
+        if self.penetration.see(step.max_depth, time, 0) {
+            self.penetration_between = simulation.deepest_contact();
+        }
         self.solver_failures += step.dynamics.lcp_failures as u64;
         self.quarantined += step.dynamics.quarantined.len();
         let energy = simulation.world().energy();

@@ -70,6 +70,7 @@ impl<'a> Summary<'a> {
             .with("energy_error_max_J", stats.energy_error.value)
             .with("penetration_max_m", stats.penetration.value)
             .with("penetration_max_time_s", stats.penetration.time)
+            .with("penetration_max_links", stats.penetration_between.as_ref().map(|links| links.to_vec()))
             .with("joint_error_max_m", stats.joint_position_error.value)
             .with("joint_error_max_m_joint", self.joint_of_position)
             .with("joint_error_max_rad", stats.joint_angle_error.value)
@@ -142,10 +143,13 @@ impl Summary<'_> {
     fn penetration(&self) -> String {
         let worst = &self.stats.penetration;
         if worst.value == 0.0 {
-            "none".into()
-        } else {
-            format!("{} at most, at {} s", metres(worst.value), round(worst.time))
+            return "none".into();
         }
+        let between = match &self.stats.penetration_between {
+            Some([a, b]) => format!("{a} and {b}, "),
+            None => String::new(),
+        };
+        format!("{} at most ({between}at {} s)", metres(worst.value), round(worst.time))
     }
 
     fn joint_error(&self) -> String {

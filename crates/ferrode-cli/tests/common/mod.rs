@@ -91,3 +91,19 @@ impl Table {
         *self.column(name).last().unwrap()
     }
 }
+
+/// A file of the project's `worlds`.
+pub fn world(name: &str) -> String {
+    format!("{}/../../worlds/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Runs a file, and reads its recording and its summary. `name` is for the recording.
+pub fn recorded(file: &str, name: &str, options: &[&str]) -> (Table, serde_json::Value) {
+    let out = scratch(name);
+    let mut line = vec!["run", file, "--quiet", "--json", "--record", out.to_str().unwrap()];
+    line.extend(options);
+    let done = ferrode(&line);
+    assert_eq!(done.code, 0, "{line:?}: {}", done.err);
+    let table = Table::from_csv(&std::fs::read_to_string(out).unwrap());
+    (table, serde_json::from_str(&done.out).unwrap())
+}
