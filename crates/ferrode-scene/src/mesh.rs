@@ -107,7 +107,7 @@ fn extrude(outlines: &[Vec<[f64; 2]>], height: f64) -> Result<Triangles, String>
         })
         .collect();
     let mut body = Triangles::default();
-    for (index, outline) in outlines.iter().enumerate().filter(|&(index, _)| depth[index] % 2 == 0) {
+    for (index, outline) in outlines.iter().enumerate().filter(|&(index, _)| depth[index].is_multiple_of(2)) {
         let mut rings = vec![wound(outline, true)];
         for (hole, ring) in outlines.iter().enumerate() {
             if depth[hole] == depth[index] + 1 && contains(outline, ring[0]) {
@@ -190,7 +190,7 @@ fn contains(outline: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
         .iter()
         .zip(next)
         .filter(|(a, b)| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
-    crossed.count() % 2 == 1
+    !crossed.count().is_multiple_of(2)
 }
 
 #[cfg(test)]
