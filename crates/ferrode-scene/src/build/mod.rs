@@ -52,6 +52,7 @@ mod coupling;
 mod named;
 mod passive;
 mod shapes;
+mod solids;
 
 use ferrode::{Error as EngineError, Pose, Softness, Stepper, Vec3, World};
 

@@ -1,9 +1,9 @@
 //! Collisions become geoms with materials; which pairs never touch.
 
-use ferrode::{BodyKey, Capsule, Cuboid, Cylinder, GeomKey, Material, Plane, Pose, Shape, Sphere, World};
+use ferrode::{BodyKey, GeomKey, Material, Plane, Pose, World};
 
 use super::bodies::BuiltLink;
-use super::{refused, softness};
+use super::{refused, softness, solids};
 use crate::description::{Body, Collision, Geometry, Link, LinkId, ModelId, Scene, Surface};
 use crate::error::{Notes, Result};
 
@@ -29,10 +29,7 @@ pub(super) fn add_geoms(
             material.friction_direction = material.friction_direction.map(|d| in_world.transform_vector(d));
             world.add_static(plane, Pose::IDENTITY).map_err(refused)?
         } else {
-            let Some(shape) = shape(&collision.geometry).map_err(refused)? else {
-                not_built(collision, notes);
-                continue;
-            };
+            let Some(shape) = solids::shape(collision, notes).map_err(refused)? else { continue };
             match body {
                 Some(body) => {
                     let offset = link.inertial.pose.inverse() * collision.pose;
@@ -47,35 +44,6 @@ pub(super) fn add_geoms(
         geoms.push(key);
     }
     Ok(geoms)
-}
-
-fn shape(geometry: &Geometry) -> std::result::Result<Option<Shape>, ferrode::Error> {
-    Ok(Some(match *geometry {
-        Geometry::Cuboid { size } => Cuboid::new(size)?.into(),
-        Geometry::Sphere { radius } => Sphere::new(radius)?.into(),
-        Geometry::Cylinder { radius, length } => Cylinder::new(radius, length)?.into(),
-        Geometry::Capsule { radius, length } => Capsule::new(radius, length)?.into(),
-        // An ellipsoid of equal axes is a sphere.
-        Geometry::Ellipsoid { radii } if radii.x == radii.y && radii.y == radii.z => {
-            Sphere::new(radii.x)?.into()
-        }
-        _ => return Ok(None),
-    }))
-}
-
-fn not_built(collision: &Collision, notes: &mut Notes) {
-    let message = match collision.geometry {
-        Geometry::Empty => return,
-        Geometry::Plane { .. } => {
-            format!("the plane of collision `{}` is left out: only static models have planes", collision.name)
-        }
-        _ => format!(
-            "collision `{}` is left out: the shape `{}` is not supported yet",
-            collision.name,
-            collision.geometry.kind()
-        ),
-    };
-    notes.not_supported(collision.origin.clone(), message);
 }
 
 /// The material of a surface. Stiffness and damping win over ERP and CFM, as they say more; a surface that gives

@@ -111,4 +111,6 @@ pub struct Mesh {
     pub submesh: Option<String>,
     /// The part is to be moved so that its middle is at the origin.
     pub center_submesh: bool,
+    /// Its convex hull is meant (SDF's `optimization="convex_hull"`).
+    pub convex_hull: bool,
 }

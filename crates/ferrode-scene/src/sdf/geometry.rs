@@ -127,7 +127,9 @@ fn read_mesh(shape: Element<'_>, cx: &mut Context<'_>) -> Result<Geometry> {
         attributes: &["optimization"],
     };
     shape.expect(&mut cx.notes, &MESH);
-    if let Some(optimization) = shape.attribute("optimization").filter(|value| !value.is_empty()) {
+    let optimization = shape.attribute("optimization").filter(|value| !value.is_empty());
+    let convex_hull = optimization.as_ref().is_some_and(|value| value.text() == "convex_hull");
+    if let Some(optimization) = optimization.filter(|_| !convex_hull) {
         let message = format!("the mesh is used as it is, without `{}`", optimization.text());
         cx.notes.not_supported(optimization.origin(), message);
     }
@@ -137,6 +139,7 @@ fn read_mesh(shape: Element<'_>, cx: &mut Context<'_>) -> Result<Geometry> {
     };
     let uri = shape.required("uri")?.value();
     let mut mesh = read_mesh_reference(&uri, scale, cx)?;
+    mesh.convex_hull = convex_hull;
     if let Some(submesh) = shape.child("submesh") {
         mesh.submesh = Some(submesh.required("name")?.value().word()?.to_owned());
         mesh.center_submesh = submesh.flag_in("center", false)?;
@@ -163,7 +166,7 @@ pub(crate) fn read_mesh_reference(uri: &Value<'_>, scale: Vec3, cx: &mut Context
             None
         }
     };
-    Ok(Mesh { uri: text.to_owned(), path, scale, submesh: None, center_submesh: false })
+    Ok(Mesh { uri: text.to_owned(), path, scale, submesh: None, center_submesh: false, convex_hull: false })
 }
 
 fn read_polylines(geometry: Element<'_>, cx: &mut Context<'_>) -> Result<Geometry> {
