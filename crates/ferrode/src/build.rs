@@ -118,14 +118,36 @@ impl BodyBuilder {
 
 /// Mass properties of a shape of the given density (kg/m³), about its own origin.
 ///
+/// ```
+/// use ferrode::{Convex, mass_of, prelude::*};
+/// # fn main() -> Result<(), Error> {
+/// let corners: Vec<Vec3> = (0..8_u8)
+///     .map(|i| Vec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
+///     .collect();
+/// let cube = mass_of(&Convex::from_points(&corners)?.into(), 6.0)?; // one corner at the origin
+/// assert!((cube.mass - 6.0).abs() < 1e-12);
+/// assert!((cube.centre - Vec3::splat(0.5)).length() < 1e-12);
+/// assert!((cube.about_centre().rows[0][0] - 1.0).abs() < 1e-12); // m a²/6
+/// # Ok(()) }
+/// ```
+///
 /// # Errors
-/// [`Error::NoVolume`] for planes and rays; [`Error::Dynamics`] for a density that is not positive.
+/// [`Error::NoVolume`] for planes and rays; [`Error::Dynamics`] for a density that is not positive, or a mesh that is
+/// open or inside out.
 pub fn mass_of(shape: &Shape, density: f64) -> Result<Mass, Error> {
     Ok(match shape {
         Shape::Sphere(s) => Mass::sphere(density, s.radius())?,
         Shape::Cuboid(s) => Mass::cuboid(density, s.sides())?,
         Shape::Capsule(s) => Mass::capsule(density, Axis::Z, s.radius(), s.length())?,
         Shape::Cylinder(s) => Mass::cylinder(density, Axis::Z, s.radius(), s.length())?,
+        Shape::Convex(s) => {
+            let fan = |face: &[u32]| -> Vec<[u32; 3]> {
+                face[1..].windows(2).map(|edge| [face[0], edge[0], edge[1]]).collect()
+            };
+            let triangles: Vec<_> = (0..s.face_count()).flat_map(|i| fan(s.face(i))).collect();
+            Mass::trimesh(density, s.points(), &triangles)?
+        }
+        Shape::TriMesh(s) => Mass::trimesh(density, s.vertices(), s.triangles())?,
         Shape::Plane(_) => return Err(Error::NoVolume { shape: "plane" }),
         Shape::Ray(_) => return Err(Error::NoVolume { shape: "ray" }),
         _ => return Err(Error::NoVolume { shape: "shape of this kind" }),

@@ -28,8 +28,8 @@ pub use energy::Energy;
 pub use error::Error;
 pub use events::ContactEvent;
 pub use ferrode_collide::{
-    Capsule, CollideOptions, Colliders, Cuboid, Cylinder, Geom, GeomContact, GeomKey, Plane, Ray, Shape,
-    SpaceKey, SpaceKind, Sphere,
+    Capsule, CollideOptions, Colliders, Convex, Cuboid, Cylinder, Geom, GeomContact, GeomKey, Plane, Ray,
+    Shape, SpaceKey, SpaceKind, Sphere, TriMesh,
 };
 pub use ferrode_dynamics::{
     AMotor, AMotorMode, AutoDisable, AxisFrame, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping,
