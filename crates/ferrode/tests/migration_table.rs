@@ -66,9 +66,10 @@ fn called(
     let _ = c.aabb(key);
     let _ = c.parent(key);
     let _ = c.set_parent(key, None);
+    let _ = Convex::from_faces(&[], &[[0, 1, 2]]);
 }
 
-const CALLED: [&str; 10] = [
+const CALLED: [&str; 11] = [
     "World::add_geom",
     "World::add_static",
     "World::create_joint",
@@ -79,6 +80,7 @@ const CALLED: [&str; 10] = [
     "Colliders::aabb",
     "Colliders::parent",
     "Colliders::set_parent",
+    "Convex::from_faces",
 ];
 
 #[test]
@@ -101,9 +103,10 @@ fn every_method_that_the_table_names_exists() {
     exist!(known, "Capsule", Capsule: new);
     exist!(
         known, "Colliders", Colliders:
-        add_geom, add_space, member_count, members, remove_geom, remove_space, set_bits, set_body,
-        set_hash_levels, set_offset, set_pose, set_sublevel, sublevel
+        add_geom, add_space, cleanup, member_count, members, remove_geom, remove_space, set_bits,
+        set_body, set_cleanup, set_hash_levels, set_offset, set_pose, set_sublevel, sublevel
     );
+    exist!(known, "Convex", Convex: from_points);
     exist!(known, "Cuboid", Cuboid: new);
     exist!(known, "Cylinder", Cylinder: new);
     exist!(
@@ -215,9 +218,12 @@ fn every_method_that_the_table_names_exists() {
         IDENTITY, conjugate, derivative, from_axis_angle, from_matrix, to_matrix
     );
     exist!(known, "Ray", Ray: new);
-    exist!(known, "SpaceKind", SpaceKind: HASH, Simple);
+    let quadtree = SpaceKind::Quadtree { center: [0.0; 2], half_sides: [1.0; 2], depth: 1 };
+    let _ = (SpaceKind::Simple, SpaceKind::HASH, quadtree, SpaceKind::SweepAndPrune);
+    known.extend(["Simple", "HASH", "Quadtree", "SweepAndPrune"].map(|kind| format!("SpaceKind::{kind}")));
     exist!(known, "Sphere", Sphere: new);
     exist!(known, "Stepper", Stepper: Direct, Quick);
+    exist!(known, "TriMesh", TriMesh: new);
     exist!(known, "Vec3", Vec3: normalized);
     exist!(
         known, "World", World:
