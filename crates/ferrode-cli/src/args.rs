@@ -200,7 +200,7 @@ fn setup_args(command: Command) -> Command {
                 .long("dt")
                 .value_name("H")
                 .value_parser(positive)
-                .help("Step size in seconds [default: the file's, else 0.001]"),
+                .help("Step size in seconds\n[default: the file's, else 0.001 for SDF and 0.0005 for URDF]"),
         )
         .arg(
             Arg::new("ground")

@@ -4,7 +4,7 @@ use crate::args::{CompareArgs, STEPPERS};
 use crate::exit::{Exit, Failure};
 use crate::json::Object;
 use crate::progress::Progress;
-use crate::run::{print, simulate};
+use crate::run::{print, print_warnings, simulate};
 use crate::simulation::Simulation;
 use crate::stats::Stats;
 use crate::summary::{metres, round, seconds};
@@ -16,9 +16,7 @@ use crate::summary::{metres, round, seconds};
 pub fn compare(args: &CompareArgs) -> Result<Exit, Failure> {
     let start = Simulation::new(&args.file, &args.setup)?;
     if !args.quiet {
-        for warning in &start.warnings {
-            eprintln!("{warning}");
-        }
+        print_warnings(&start.warnings);
     }
     let steps = args.length.steps(start.step_size());
     let mut results = Vec::new();

@@ -7,6 +7,7 @@ use crate::record::Recorder;
 use crate::simulation::Simulation;
 use crate::stats::Stats;
 use crate::summary::Summary;
+use ferrode_scene::Warning;
 use std::io::Write;
 use std::time::Instant;
 
@@ -20,9 +21,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
         simulation.world_mut().stepper = stepper;
     }
     if !args.quiet {
-        for warning in &simulation.warnings {
-            eprintln!("{warning}");
-        }
+        print_warnings(&simulation.warnings);
     }
     let steps = args.length.steps(simulation.step_size());
     let mut recorder = args.record.as_ref().map(|path| Recorder::create(path, &simulation)).transpose()?;
@@ -76,6 +75,17 @@ pub fn simulate(
     }
     stats.finish(simulation);
     Ok(stats)
+}
+
+/// Writes the first warnings to standard error; `ferrode check` lists all.
+pub fn print_warnings(warnings: &[Warning]) {
+    const MOST: usize = 10;
+    for warning in warnings.iter().take(MOST) {
+        eprintln!("{warning}");
+    }
+    if warnings.len() > MOST {
+        eprintln!("and {} more: see `ferrode check`", warnings.len() - MOST);
+    }
 }
 
 /// Writes to standard output.

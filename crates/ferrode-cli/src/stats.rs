@@ -35,8 +35,7 @@ pub struct Stats {
     pub steps: u64,
     /// Simulated time, s.
     pub time: f64,
-    /// What each step took, ns.
-    step_times: Vec<u64>,
+    times: StepTimes,
     contacts: u64,
     /// Most contact points in a step.
     pub contacts_max: usize,
@@ -69,8 +68,7 @@ impl Stats {
     pub fn start(simulation: &Simulation, steps: u64) -> Self {
         let energy = simulation.world().energy();
         Self {
-            // A run may be asked to take forever; its memory is not taken beforehand.
-            step_times: Vec::with_capacity(steps.min(1 << 20) as usize),
+            times: StepTimes::with_capacity(steps),
             energy_start: energy,
             energy_end: energy,
             max_kinetic: energy.kinetic,
@@ -83,7 +81,7 @@ impl Stats {
         self.steps += 1;
         let time = simulation.world().time();
         self.time = time;
-        self.step_times.push(u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX));
+        self.times.push(duration);
         self.contacts += step.contacts as u64;
         self.contacts_max = self.contacts_max.max(step.contacts);
         if self.penetration.see(step.max_depth, time, 0) {
@@ -116,7 +114,7 @@ impl Stats {
 
     /// Time that all steps took, s.
     pub fn wall(&self) -> f64 {
-        self.step_times.iter().map(|ns| *ns as f64).sum::<f64>() / 1e9
+        self.times.total.as_secs_f64()
     }
 
     /// Simulated time over the time it took.
@@ -130,12 +128,9 @@ impl Stats {
         if self.steps > 0 { self.contacts as f64 / self.steps as f64 } else { 0.0 }
     }
 
-    /// The time below which the given part of the steps stayed (nearest rank), s; 0 without steps.
+    /// The time below which the given part of the steps stayed, s; 0 without steps.
     pub fn step_time_quantile(&self, part: f64) -> f64 {
-        let mut sorted = self.step_times.clone();
-        sorted.sort_unstable();
-        let rank = (part * sorted.len() as f64).ceil() as usize;
-        sorted.get(rank.max(1) - 1).map_or(0.0, |ns| *ns as f64 / 1e9)
+        self.times.quantile(part)
     }
 
     /// What the energy has changed by, J.
@@ -144,19 +139,85 @@ impl Stats {
     }
 }
 
+/// What steps took: of all, or of each n-th if they are many, so that long runs don't fill the memory.
+#[derive(Clone, Debug)]
+struct StepTimes {
+    /// ns
+    kept: Vec<u64>,
+    /// Each so many are kept.
+    stride: u64,
+    seen: u64,
+    total: Duration,
+}
+
+impl Default for StepTimes {
+    fn default() -> Self {
+        Self { kept: Vec::new(), stride: 1, seen: 0, total: Duration::ZERO }
+    }
+}
+
+impl StepTimes {
+    /// Most times that are kept.
+    const MOST: usize = 1 << 20;
+
+    fn with_capacity(steps: u64) -> Self {
+        let capacity = usize::try_from(steps).unwrap_or(Self::MOST).min(Self::MOST);
+        Self { kept: Vec::with_capacity(capacity), ..Self::default() }
+    }
+
+    fn push(&mut self, duration: Duration) {
+        self.total += duration;
+        if self.seen.is_multiple_of(self.stride) {
+            if self.kept.len() == Self::MOST {
+                let mut number = 0;
+                self.kept.retain(|_| {
+                    number += 1;
+                    number % 2 == 1
+                });
+                self.stride *= 2;
+            }
+            if self.seen.is_multiple_of(self.stride) {
+                self.kept.push(u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX));
+            }
+        }
+        self.seen += 1;
+    }
+
+    /// By nearest rank.
+    fn quantile(&self, part: f64) -> f64 {
+        let mut sorted = self.kept.clone();
+        sorted.sort_unstable();
+        let rank = (part * sorted.len() as f64).ceil() as usize;
+        sorted.get(rank.max(1) - 1).map_or(0.0, |ns| *ns as f64 / 1e9)
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Largest, Stats};
+    use super::{Largest, StepTimes};
+    use std::time::Duration;
 
     #[test]
     fn quantiles_are_by_nearest_rank() {
-        let mut stats = Stats { step_times: (1..=200).rev().collect(), ..Stats::default() };
-        assert_eq!(stats.step_time_quantile(0.5), 100e-9);
-        assert_eq!(stats.step_time_quantile(0.99), 198e-9);
-        stats.step_times = vec![7];
-        assert_eq!(stats.step_time_quantile(0.99), 7e-9);
-        stats.step_times.clear();
-        assert_eq!((stats.step_time_quantile(0.5), stats.real_time_factor()), (0.0, 0.0));
+        let mut times = StepTimes::default();
+        assert_eq!(times.quantile(0.5), 0.0);
+        times.push(Duration::from_nanos(7));
+        assert_eq!(times.quantile(0.99), 7e-9);
+        let mut times = StepTimes::default();
+        (1..=200).rev().for_each(|ns| times.push(Duration::from_nanos(ns)));
+        assert_eq!((times.quantile(0.5), times.quantile(0.99)), (100e-9, 198e-9));
+        assert_eq!(times.total, Duration::from_nanos(200 * 201 / 2));
+    }
+
+    #[test]
+    fn long_runs_keep_each_nth_step() {
+        let mut times = StepTimes::default();
+        let steps = 5 * StepTimes::MOST as u64;
+        (0..steps).for_each(|ns| times.push(Duration::from_nanos(ns)));
+        assert_eq!(times.stride, 8);
+        assert!(times.kept.len() <= StepTimes::MOST);
+        assert!(times.kept.iter().enumerate().all(|(index, ns)| *ns == 8 * index as u64));
+        assert_eq!(times.total, Duration::from_nanos(steps * (steps - 1) / 2));
     }
 
     #[test]

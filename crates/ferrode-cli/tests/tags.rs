@@ -229,3 +229,34 @@ fn steps_contacts_and_gravity() {
         run("bounce", "no_gravity", &[("0 0 -10</gravity>", "0 0 0</gravity>")], &["--time", "0.5"]);
     close(table.last("link.dead::body.z[m]"), 1.1, 1e-12);
 }
+
+/// Tags that the engine cannot follow are told of, never passed over in silence.
+#[test]
+fn tags_act_or_are_warned_of() {
+    let physics = [
+        ("cone", "<sor>1.3</sor>", "<sor>1.3</sor><friction_model>cone_model</friction_model>"),
+        ("box_model", "<sor>1.3</sor>", "<sor>1.3</sor><friction_model>box_model</friction_model>"),
+        ("precon", "<sor>1.3</sor>", "<sor>1.3</sor><precon_iters>10</precon_iters>"),
+        (
+            "rescaling",
+            "<sor>1.3</sor>",
+            "<sor>1.3</sor><use_dynamic_moi_rescaling>1</use_dynamic_moi_rescaling>",
+        ),
+    ];
+    let (as_is, plain) = run("solver", "plain", &[], &["--time", "0.5"]);
+    assert_eq!(plain["warnings"], 0);
+    for (case, from, to) in physics {
+        let (table, summary) = run("solver", case, &[(from, to)], &["--time", "0.5"]);
+        assert!(table != as_is || summary["warnings"] == 1, "{case}: {summary}");
+    }
+    let surface = [
+        ("max_vel", "<kd>1</kd>", "<kd>1</kd><max_vel>0.05</max_vel>"),
+        ("min_depth", "<kd>1</kd>", "<kd>1</kd><min_depth>0.003</min_depth>"),
+    ];
+    let (as_is, plain) = run("softness", "plain", &[], &["--time", "0.5"]);
+    assert_eq!(plain["warnings"], 0);
+    for (case, from, to) in surface {
+        let (table, summary) = run("softness", case, &[(from, to)], &["--time", "0.5"]);
+        assert!(table != as_is || summary["warnings"] == 1, "{case}: {summary}");
+    }
+}
