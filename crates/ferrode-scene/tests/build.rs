@@ -177,6 +177,12 @@ fn efforts_are_limited() {
     world.add_effort(JointId(0), 0, -50.0).unwrap();
     world.step().unwrap();
     assert!((speed(&world) + 2.0 * H).abs() < 1e-9, "{}", speed(&world));
+    let mut world = on_axis("revolute", "0 0 1", "<limit><velocity>0.5</velocity></limit>");
+    for _ in 0..100 {
+        world.add_effort(JointId(0), 0, 3.0).unwrap();
+        world.step().unwrap();
+    }
+    assert!((0.5..0.5 + 3.0 * H).contains(&speed(&world)), "{}", speed(&world));
 }
 
 #[test]

@@ -349,7 +349,14 @@ fn what_cannot_be_followed_is_a_warning() {
         warns("<link name='l' mass='3'/>"),
         ["link: attribute `mass` of <link> is not understood and has no effect"]
     );
-    assert_eq!(warns("<link name='l'/><gz:thing><x/></gz:thing>"), [""; 0]);
+    assert_eq!(
+        warns("<link name='l'/><gz:thing><x/></gz:thing>"),
+        [": elements of other tools (with a prefix) ignored: 1"]
+    );
+    assert_eq!(
+        warns("<link name='l'><experimental:x/></link>"),
+        ["experimental:x: <experimental:x> is not supported and has no effect"]
+    );
     let mesh = "<link name='l'><collision name='c'><geometry><mesh><uri>model://no/x.stl</uri></mesh></geometry></collision></link>";
     assert!(warns(mesh)[0].starts_with("uri: the mesh has no file: `model://no/x.stl` is not found"));
 }

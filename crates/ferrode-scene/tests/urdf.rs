@@ -4,7 +4,7 @@ use std::path::Path;
 
 use ferrode_math::Vec3;
 use ferrode_scene::description::{Body, Geometry, JointId, JointKind, LinkId, Spring};
-use ferrode_scene::{LoadOptions, Loaded, WarningKind, load, load_str};
+use ferrode_scene::{BuildOptions, LoadOptions, Loaded, WarningKind, build, load, load_str};
 
 fn options() -> LoadOptions {
     LoadOptions { use_environment: false, ..LoadOptions::default() }
@@ -158,4 +158,35 @@ fn a_link_without_mass_at_the_end_of_a_joint_is_left_out_with_a_warning() {
     let loaded = pair("continuous", extra);
     assert_eq!((loaded.scene.links.len(), loaded.scene.joints.len()), (2, 1));
     assert!(loaded.warnings[0].message().contains("link `r::c` has no mass"), "{}", loaded.warnings[0]);
+}
+
+#[test]
+fn a_planar_joint_keeps_its_link_in_the_plane() {
+    // The plane's normal leans by 0.5 rad from the vertical: the link slides down in it.
+    let text = "<robot name='r'><link name='world'/>
+      <link name='sled'><inertial><origin xyz='0.1 0 0.05'/><mass value='2'/><inertia ixx='0.1' iyy='0.2' izz='0.3'/></inertial></link>
+      <joint name='table' type='planar'><parent link='world'/><child link='sled'/><origin xyz='0 0 1' rpy='0.5 0 0'/>
+      <axis xyz='0 0 1'/></joint></robot>";
+    let scene = load_str("sled.urdf", text, &options()).unwrap_or_else(|error| panic!("{error}")).scene;
+    let mut world = build(&scene, &BuildOptions { step: Some(0.01), ..BuildOptions::default() }).unwrap();
+    assert!(world.warnings.is_empty(), "{:?}", world.warnings);
+    let start = world.link("sled").unwrap().pose();
+    let normal = start.transform_vector(Vec3::Z);
+    // A push that would tip it over, and a turn in the plane.
+    let body = world.link("sled").unwrap().body().unwrap();
+    let body = world.world.body_mut(body).unwrap();
+    body.set_angular_velocity(normal * 2.0 + Vec3::X * 0.5).unwrap();
+    for _ in 0..100 {
+        world.step().unwrap();
+    }
+    let pose = world.link("sled").unwrap().pose();
+    let moved = pose.position - start.position;
+    assert!(normal.dot(moved).abs() < 1e-3, "{}", normal.dot(moved));
+    assert!((pose.transform_vector(Vec3::Z) - normal).length() < 1e-3);
+    let table = world.joint("table").unwrap();
+    assert!((table.velocity(0).unwrap() - 2.0).abs() < 0.01, "{:?}", table.velocity(0));
+    assert!((table.position(0).unwrap() - 2.0).abs() < 0.02, "{:?}", table.position(0));
+    // g sin 0.5 · t²/2 down the plane.
+    let fallen = 0.5 * 9.8 * ferrode::math::real::sin(0.5);
+    assert!((moved.length() - fallen).abs() < 0.15 * fallen, "{} {fallen}", moved.length());
 }

@@ -14,13 +14,16 @@
 //! | universal, child static | universal | parent, world | 1 → 1, 2 → 2 |
 //! | screw | piston, with a coupling | child, parent | 1 (the angle) → 2 |
 //! | gearbox | none, but a coupling | | |
+//! | planar, parent or child static | linear and angular motor | the one that moves | 1 (the turn in the plane) → 3 |
 //! | revolute2 | hinge-2 | parent, child | 1 → 1, 2 → 2; motor of 2 reversed |
 
 use ferrode::{
-    BodyKey, Error, Hinge, Hinge2, JointKey, LimitMotor, Piston, Slider, Softness, Universal, Vec3, World,
+    AMotor, BodyKey, Error, Hinge, Hinge2, JointKey, LimitMotor, Piston, Slider, Softness, Universal, Vec3,
+    World,
 };
 
 use super::bodies::BuiltLink;
+use super::planar::{self, Planar};
 use super::{NamedWorld, refused, softness};
 use crate::description::{Axis, Body, Joint, JointId, JointKind, Limits, Scene};
 use crate::error::{Notes, Result};
@@ -33,6 +36,8 @@ pub(super) struct BuiltJoint {
     /// The bodies of child and parent; `None` for the world and static links.
     pub child: Option<BodyKey>,
     pub parent: Option<BodyKey>,
+    /// Of a planar joint.
+    pub planar: Option<Planar>,
     /// For each axis that turns: how often it has gone round, and the angle it was last seen at.
     pub turns: [Turns; 2],
 }
@@ -52,6 +57,7 @@ pub(super) enum Form {
     Universal,
     Hinge2,
     Screw,
+    Planar,
 }
 
 /// The stops and motor behind an axis of the file, for whoever drives it:
@@ -125,6 +131,7 @@ fn form_of(
         JointKind::Ball => return Some(Form::Ball),
         JointKind::Fixed => return Some(Form::Fixed),
         JointKind::Screw { .. } => return Some(Form::Screw),
+        JointKind::Planar if !both_move => return Some(Form::Planar),
         // It holds nothing: other joints hold its bodies. What it couples is seen to elsewhere.
         JointKind::Gearbox { .. } => return None,
         JointKind::Universal if perpendicular => return Some(Form::Universal),
@@ -137,6 +144,7 @@ fn form_of(
         JointKind::Universal | JointKind::Revolute2 => {
             "with axes that are not perpendicular it needs two links that can move"
         }
+        JointKind::Planar => "its plane must not move: the parent must be the world or a static link",
         _ => "the engine has no such joint",
     };
     notes.not_supported(
@@ -160,7 +168,17 @@ fn connect(
     let flipped = child.is_none();
     let (first, second) = if flipped { (parent, None) } else { (child, parent) };
     let sign = if flipped { -1.0 } else { 1.0 };
+    let mut planar = None;
     let key = match form {
+        Form::Planar => match first {
+            Some(body) => {
+                let held = planar::connect(world, body, axis * sign)?;
+                let key = held.key();
+                planar = Some(held);
+                key
+            }
+            None => world.create_joint::<ferrode::Null>(None)?,
+        },
         Form::Hinge => world.add_hinge(first, second, anchor, axis * sign)?,
         Form::Slider => world.add_slider(first, second, axis * sign)?,
         Form::Ball => world.add_ball(first, second, anchor)?,
@@ -187,7 +205,7 @@ fn connect(
             key
         }
     };
-    Ok(BuiltJoint { key, form, child, parent, turns: [Turns::default(); 2] })
+    Ok(BuiltJoint { key, form, child, parent, planar, turns: [Turns::default(); 2] })
 }
 
 fn set_limits(
@@ -270,6 +288,7 @@ impl BuiltJoint {
         let (group, sign) = match (self.form, axis) {
             (Form::Hinge | Form::Slider, 0) => (1, 1.0),
             (Form::Screw, 0) => (2, 1.0),
+            (Form::Planar, 0) => (3, 1.0),
             (Form::Universal, 0 | 1) => (if self.flipped() { axis + 1 } else { 2 - axis }, 1.0),
             (Form::Hinge2, 0) => (1, 1.0),
             (Form::Hinge2, 1) => (2, -1.0),
@@ -291,6 +310,7 @@ impl BuiltJoint {
             Form::Universal => change(world.joint_mut::<Universal>(self.key)?.limit_motor_of_mut(group)?)?,
             Form::Hinge2 => change(world.joint_mut::<Hinge2>(self.key)?.limit_motor_of_mut(group)?)?,
             Form::Screw => change(world.joint_mut::<Piston>(self.key)?.limit_motor_of_mut(group)?)?,
+            Form::Planar => change(world.joint_mut::<AMotor>(self.key)?.limit_motor_of_mut(group)?)?,
             Form::Ball | Form::Fixed => {}
         }
         Ok(())
@@ -303,6 +323,7 @@ impl BuiltJoint {
             (Form::Hinge, 0) => world.joint::<Hinge>(self.key).ok()?.axis() * sign,
             (Form::Slider, 0) => world.joint::<Slider>(self.key).ok()?.axis() * sign,
             (Form::Screw, 0) => world.joint::<Piston>(self.key).ok()?.axis() * sign,
+            (Form::Planar, 0) => self.planar.as_ref()?.normal() * sign,
             (Form::Universal, 0 | 1) => {
                 let universal = world.joint::<Universal>(self.key).ok()?;
                 match self.motor(axis)?.group {
@@ -322,6 +343,7 @@ impl BuiltJoint {
             (Form::Hinge, 0) => world.joint::<Hinge>(self.key).ok()?.angle(),
             (Form::Slider, 0) => world.joint::<Slider>(self.key).ok()?.position().ok()?,
             (Form::Screw, 0) => world.joint::<Piston>(self.key).ok()?.angle(),
+            (Form::Planar, 0) => self.planar.as_ref()?.angle(world),
             (Form::Universal, 0 | 1) => {
                 let universal = world.joint::<Universal>(self.key).ok()?;
                 universal.angles()[self.motor(axis)?.group - 1]
@@ -341,7 +363,7 @@ impl BuiltJoint {
     }
 
     pub(super) fn is_angular(&self) -> bool {
-        matches!(self.form, Form::Hinge | Form::Universal | Form::Hinge2 | Form::Screw)
+        !matches!(self.form, Form::Slider | Form::Ball | Form::Fixed)
     }
 
     /// The position of an axis, turns included.
@@ -431,7 +453,8 @@ impl NamedWorld {
     }
 
     /// Adds a force (N) or torque (N·m) along a joint's axis 0 or 1 for the next step, on the child, and its
-    /// opposite on the parent; within the effort limit of the axis.
+    /// opposite on the parent. It is cut to the effort limit of the axis, and is nothing if it would drive an axis that
+    /// has reached its velocity limit on in the same direction: these are limits of an actuator.
     ///
     /// # Errors
     /// As the engine's for a number that is not finite. A joint or axis that is not there gets nothing.
@@ -441,7 +464,12 @@ impl NamedWorld {
         let described = self.scene.joints.get(joint.0);
         let limits = described.and_then(|joint| [&joint.axis, &joint.axis2][axis.min(1)].as_ref());
         let most = limits.and_then(|axis| axis.limits.effort).unwrap_or(f64::INFINITY);
-        let effort = effort.clamp(-most, most);
+        let mut effort = effort.clamp(-most, most);
+        let fastest = limits.and_then(|axis| axis.limits.velocity).unwrap_or(f64::INFINITY);
+        let velocity = built.velocity(&self.world, axis).unwrap_or(0.0);
+        if velocity.abs() >= fastest && velocity * effort > 0.0 {
+            effort = 0.0;
+        }
         if built.form == Form::Slider {
             return Ok(self.world.joint_mut::<Slider>(built.key)?.add_force(effort)?);
         }

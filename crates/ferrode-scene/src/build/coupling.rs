@@ -244,20 +244,10 @@ impl Twist {
         rotation(world, self.reference).rotate(self.axis)
     }
 
-    /// The angle within half a turn: twice that of the part of the rotation that is about the axis.
+    /// The angle within half a turn.
     fn raw(&self, world: &World) -> f64 {
         let now = rotation(world, self.reference).conjugate() * rotation(world, self.body);
-        let turned = now * self.initial.conjugate();
-        let half = ferrode::math::real::atan2(turned.imaginary().dot(self.axis), turned.w);
-        let turn = 2.0 * std::f64::consts::PI;
-        let angle = 2.0 * half;
-        if angle > 0.5 * turn {
-            angle - turn
-        } else if angle < -0.5 * turn {
-            angle + turn
-        } else {
-            angle
-        }
+        super::twist_angle(now * self.initial.conjugate(), self.axis)
     }
 }
 

@@ -51,10 +51,11 @@ mod connect;
 mod coupling;
 mod named;
 mod passive;
+mod planar;
 mod shapes;
 mod solids;
 
-use ferrode::{Error as EngineError, Pose, Softness, Stepper, Vec3, World};
+use ferrode::{Error as EngineError, Pose, Quat, Softness, Stepper, Vec3, World};
 
 use crate::description::{FrictionModel, JointId, LinkId, OdeSolver, Scene};
 use crate::error::{Notes, Result, SceneError, Warning, WarningKind};
@@ -172,6 +173,19 @@ fn refused(origin: &Origin, what: &str, error: impl std::fmt::Display) -> SceneE
 /// A spring and damper as ERP and CFM; `None` if both are zero.
 fn softness(stiffness: f64, damping: f64, step: f64) -> Option<Softness> {
     Softness::from_spring(stiffness, damping, step).ok()
+}
+
+/// The angle about `axis` of a rotation, within half a turn: twice that of the part of the quaternion along it.
+fn twist_angle(rotation: Quat, axis: Vec3) -> f64 {
+    let pi = std::f64::consts::PI;
+    let angle = 2.0 * ferrode::math::real::atan2(rotation.imaginary().dot(axis), rotation.w);
+    if angle > pi {
+        angle - 2.0 * pi
+    } else if angle < -pi {
+        angle + 2.0 * pi
+    } else {
+        angle
+    }
 }
 
 impl NamedWorld {

@@ -252,10 +252,13 @@ impl NamedWorld {
         let mut passive = std::mem::take(&mut self.passive);
         let updated = passive.iter_mut().try_for_each(|passive| passive.update(self));
         self.passive = passive;
+        let planar = self.joints.iter().flatten().filter_map(|joint| joint.planar.as_ref());
+        let held = planar.map(|planar| planar.update(&mut self.world, self.step_size));
+        let held = held.collect::<std::result::Result<(), Error>>();
         let couplings = std::mem::take(&mut self.couplings);
         let coupled = couplings.iter().try_for_each(|coupling| coupling.apply(self));
         self.couplings = couplings;
-        updated.and(coupled)
+        updated.and(held).and(coupled)
     }
 
     /// Leaves the motor of a joint's axis to the caller. The spring, damping and friction of a prismatic joint no longer
