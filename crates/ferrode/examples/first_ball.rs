@@ -8,7 +8,10 @@ fn main() -> Result<(), Error> {
     world.add_static(Plane::new(Vec3::Z, 0.0)?, Pose::IDENTITY)?;
     let ball = BodyBuilder::new().at(Vec3::new(0.0, 0.0, 3.0)).with_shape(Sphere::new(0.5)?, 1000.0);
     let ball = world.add_body(ball)?;
-    (0..200).try_for_each(|_| world.step(0.01).map(|_| ()))?;
+    for _ in 0..200 {
+        world.step(0.01)?;
+    }
     println!("The ball rests at {:.3} m.", world.body(ball)?.position().z);
+    assert!((world.body(ball)?.position().z - 0.5).abs() < 1e-3);
     Ok(())
 }
