@@ -39,5 +39,6 @@ pub use contact::{CollideOptions, Contacts, GeomContact};
 pub use frame::Frame;
 pub use geom::Geom;
 pub use shape::{
-    Capsule, Convex, Cuboid, Cylinder, Plane, Ray, Shape, ShapeError, ShapeKind, Sphere, TriMesh,
+    Capsule, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Plane, Ray, Shape, ShapeError, ShapeKind, Sphere,
+    TriMesh,
 };

@@ -42,13 +42,27 @@ fn run_mesh_swapped(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Cont
     out.swap();
 }
 
+fn run_plane(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    if let Shape::Plane(plane) = b {
+        body_plane(a, fa, plane, fb, out);
+    }
+}
+
+fn run_plane_swapped(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    run_plane(b, fb, a, fa, out);
+    out.swap();
+}
+
 const NONE: Option<Collider> = None;
 /// Convex bodies without a file of their own for the pair.
 const BODIES: Option<Collider> = Some(convex_bodies);
 /// A convex body and a mesh.
 const MESH: Option<Collider> = Some(run_mesh);
 const MESH_SWAPPED: Option<Collider> = Some(run_mesh_swapped);
-const KINDS: usize = 8;
+/// A convex body and a half-space.
+const PLANE: Option<Collider> = Some(run_plane);
+const PLANE_SWAPPED: Option<Collider> = Some(run_plane_swapped);
+const KINDS: usize = 10;
 
 /// Row: the first shape; column: the second.
 #[rustfmt::skip]
@@ -63,6 +77,8 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         swap!(Sphere, Ray, ray_sphere),                     // Ray
         BODIES,                                             // Convex
         pair!(Sphere, TriMesh, sphere_trimesh),             // TriMesh
+        BODIES,                                             // Ellipsoid
+        BODIES,                                             // Cone
     ],
     // Cuboid
     [
@@ -74,6 +90,8 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         swap!(Cuboid, Ray, ray_cuboid),                     // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
+        BODIES,                                             // Ellipsoid
+        BODIES,                                             // Cone
     ],
     // Capsule
     [
@@ -85,6 +103,8 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         swap!(Capsule, Ray, ray_capsule),                   // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
+        BODIES,                                             // Ellipsoid
+        BODIES,                                             // Cone
     ],
     // Cylinder
     [
@@ -96,6 +116,8 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         swap!(Cylinder, Ray, ray_cylinder),                 // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
+        BODIES,                                             // Ellipsoid
+        BODIES,                                             // Cone
     ],
     // Plane
     [
@@ -107,6 +129,8 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         swap!(Plane, Ray, ray_plane),                       // Ray
         swap!(Plane, Convex, convex_plane),                 // Convex
         swap!(Plane, TriMesh, trimesh_plane),               // TriMesh
+        PLANE_SWAPPED,                                      // Ellipsoid
+        PLANE_SWAPPED,                                      // Cone
     ],
     // Ray
     [
@@ -118,6 +142,8 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         NONE,                                               // Ray
         pair!(Ray, Convex, ray_convex),                     // Convex
         pair!(Ray, TriMesh, ray_trimesh),                   // TriMesh
+        pair!(Ray, Ellipsoid, ray_ellipsoid),               // Ellipsoid
+        pair!(Ray, Cone, ray_cone),                         // Cone
     ],
     // Convex
     [
@@ -129,6 +155,8 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         swap!(Convex, Ray, ray_convex),                     // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
+        BODIES,                                             // Ellipsoid
+        BODIES,                                             // Cone
     ],
     // TriMesh
     [
@@ -140,6 +168,34 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         swap!(TriMesh, Ray, ray_trimesh),                   // Ray
         MESH_SWAPPED,                                       // Convex
         pair!(TriMesh, TriMesh, trimesh_trimesh),           // TriMesh
+        MESH_SWAPPED,                                       // Ellipsoid
+        MESH_SWAPPED,                                       // Cone
+    ],
+    // Ellipsoid
+    [
+        BODIES,                                             // Sphere
+        BODIES,                                             // Cuboid
+        BODIES,                                             // Capsule
+        BODIES,                                             // Cylinder
+        PLANE,                                              // Plane
+        swap!(Ellipsoid, Ray, ray_ellipsoid),               // Ray
+        BODIES,                                             // Convex
+        MESH,                                               // TriMesh
+        BODIES,                                             // Ellipsoid
+        BODIES,                                             // Cone
+    ],
+    // Cone
+    [
+        BODIES,                                             // Sphere
+        BODIES,                                             // Cuboid
+        BODIES,                                             // Capsule
+        BODIES,                                             // Cylinder
+        PLANE,                                              // Plane
+        swap!(Cone, Ray, ray_cone),                         // Ray
+        BODIES,                                             // Convex
+        MESH,                                               // TriMesh
+        BODIES,                                             // Ellipsoid
+        BODIES,                                             // Cone
     ],
 ];
 

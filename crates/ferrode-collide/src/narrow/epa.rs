@@ -55,38 +55,47 @@ impl Polytope {
         true
     }
 
-    fn nearest_face(&self) -> Option<Face> {
-        let mut best: Option<Face> = None;
-        for f in &self.faces[..self.face_count] {
-            if f.distance.is_finite() && best.is_none_or(|b| f.distance < b.distance) {
-                best = Some(*f);
+    fn nearest_face(&self) -> Option<usize> {
+        let mut best: Option<usize> = None;
+        for (i, f) in self.faces[..self.face_count].iter().enumerate() {
+            if f.distance.is_finite() && best.is_none_or(|b| f.distance < self.faces[b].distance) {
+                best = Some(i);
             }
         }
         best
     }
 
-    /// Replaces all faces that see `next` by a fan of faces to it. False if there is no room.
-    fn expand(&mut self, next: Vertex, slack: f64) -> bool {
+    /// Replaces the faces that see `next` by a fan of faces to it. False if there is no room.
+    ///
+    /// Only faces connected to `start`, which sees it, through others that do are taken: among faces in one plane
+    /// rounding decides which see the point, and taking those alone could tear a second hole.
+    fn expand(&mut self, start: usize, next: Vertex, slack: f64) -> bool {
         if self.vertex_count == VERTICES {
             return false;
         }
         let apex = self.vertex_count as u8;
+        let mut seen = [0u16; FACES];
+        let mut marked = [false; FACES];
+        seen[0] = start as u16;
+        marked[start] = true;
+        let (mut count, mut done) = (1, 0);
         let mut edges = [(0u8, 0u8); EDGES];
         let mut edge_count = 0;
-        let mut i = 0;
-        while i < self.face_count {
-            let f = self.faces[i];
-            let first = self.vertices[usize::from(f.v[0])].w;
-            let visible = f.distance.is_finite() && f.normal.dot(next.w - first) > slack;
-            if !visible {
-                i += 1;
-                continue;
-            }
-            for (from, to) in [(f.v[0], f.v[1]), (f.v[1], f.v[2]), (f.v[2], f.v[0])] {
-                // An edge met from both sides lies inside the hole.
-                if let Some(k) = edges[..edge_count].iter().position(|&e| e == (to, from)) {
-                    edge_count -= 1;
-                    edges[k] = edges[edge_count];
+        while done < count {
+            let [a, b, c] = self.faces[usize::from(seen[done])].v;
+            done += 1;
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let Some(other) = self.face_with_edge(to, from) else { return false };
+                if marked[other] {
+                    continue;
+                }
+                let f = &self.faces[other];
+                let height = f.normal.dot(next.w - self.vertices[usize::from(f.v[0])].w);
+                // A face without area goes with its neighbours.
+                if !f.distance.is_finite() || height > slack {
+                    marked[other] = true;
+                    seen[count] = other as u16;
+                    count += 1;
                 } else if edge_count < EDGES {
                     edges[edge_count] = (from, to);
                     edge_count += 1;
@@ -94,15 +103,38 @@ impl Polytope {
                     return false;
                 }
             }
-            self.face_count -= 1;
-            self.faces[i] = self.faces[self.face_count];
         }
-        if edge_count == 0 || self.face_count + edge_count > FACES {
+        // A face may have been taken after an edge to it was noted.
+        let mut kept = 0;
+        for k in 0..edge_count {
+            let (from, to) = edges[k];
+            if self.face_with_edge(to, from).is_some_and(|f| !marked[f]) {
+                edges[kept] = (from, to);
+                kept += 1;
+            }
+        }
+        if kept < 3 || self.face_count - count + kept > FACES {
             return false;
         }
+        let mut remaining = 0;
+        for i in 0..self.face_count {
+            if !marked[i] {
+                self.faces[remaining] = self.faces[i];
+                remaining += 1;
+            }
+        }
+        self.face_count = remaining;
         self.vertices[self.vertex_count] = next;
         self.vertex_count += 1;
-        edges[..edge_count].iter().all(|&(from, to)| self.add_face([from, to, apex]))
+        edges[..kept].iter().all(|&(from, to)| self.add_face([from, to, apex]))
+    }
+
+    /// The face that has the edge in this direction.
+    fn face_with_edge(&self, from: u8, to: u8) -> Option<usize> {
+        self.faces[..self.face_count].iter().position(|f| {
+            let [a, b, c] = f.v;
+            (a == from && b == to) || (b == from && c == to) || (c == from && a == to)
+        })
     }
 }
 
@@ -156,10 +188,11 @@ pub(crate) fn epa(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex) -> Option<Depth
     }
     let tolerance = 1e-11 * scale;
     let slack = 1e-15 * scale;
-    let mut best = p.nearest_face()?;
+    let mut nearest = p.nearest_face()?;
     let mut upper = f64::INFINITY;
-    let mut result = best;
+    let mut result = p.faces[nearest];
     for _ in 0..VERTICES {
+        let best = p.faces[nearest];
         let next = difference(a, b, best.normal);
         let reach = best.normal.dot(next.w);
         // Of all normals tried, the one along which the bodies overlap least; of equals the last, whose face touches the
@@ -168,11 +201,11 @@ pub(crate) fn epa(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex) -> Option<Depth
             upper = reach.min(upper);
             result = best;
         }
-        if reach - best.distance <= tolerance || !p.expand(next, slack) {
+        if reach - best.distance <= tolerance || !p.expand(nearest, next, slack) {
             break;
         }
         match p.nearest_face() {
-            Some(f) => best = f,
+            Some(f) => nearest = f,
             None => break,
         }
     }
@@ -184,7 +217,38 @@ pub(crate) fn epa(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex) -> Option<Depth
         pa += corner[places[m]].a * weights[m];
         pb += corner[places[m]].b * weights[m];
     }
-    Some(Depth { normal: result.normal, depth: upper.max(0.0), a: pa, b: pb })
+    let depth = Depth { normal: result.normal, depth: upper.max(0.0), a: pa, b: pb };
+    Some(if upper - result.distance > tolerance { polish(a, b, depth, tolerance) } else { depth })
+}
+
+/// Improves a normal that ran out of faces, on surfaces curved both ways.
+///
+/// The reach h(n) = n · w(n) of the difference changes along a great circle with direction t at the rate t · w, and that
+/// rate at ρ − h, where ρ = t · dw/dθ is the radius of curvature: Newton steps down the steepest direction.
+fn polish(a: &Body<'_>, b: &Body<'_>, start: Depth, tolerance: f64) -> Depth {
+    const PROBE: f64 = 1e-4;
+    let mut best = start;
+    for _ in 0..16 {
+        let n = best.normal;
+        let at = difference(a, b, n);
+        let h = n.dot(at.w);
+        let Some(t) = (at.w - n * h).normalized() else { break };
+        let slope = t.dot(at.w);
+        let probe = difference(a, b, (n - t * PROBE).normalized_or(n));
+        let radius = t.dot(at.w - probe.w) / PROBE;
+        if slope <= 0.0 || !(radius > h) {
+            break;
+        }
+        let step = slope / (radius - h);
+        let m = (n - t * step.min(0.1)).normalized_or(n);
+        let next = difference(a, b, m);
+        let reach = m.dot(next.w);
+        if !(reach < best.depth - 1e-3 * tolerance) {
+            break;
+        }
+        best = Depth { normal: m, depth: reach.max(0.0), a: next.a, b: next.b };
+    }
+    best
 }
 
 fn nearest_on_face(i: &Vertex, j: &Vertex, k: &Vertex, p: Vec3) -> ([usize; 3], [f64; 3], usize) {

@@ -175,6 +175,8 @@ pub(crate) fn gjk(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
     simplex.reduce();
     let mut v = simplex.nearest();
     let mut best = simplex;
+    // The normal of the furthest support plane: slivers lose the direction before the distance.
+    let (mut best_direction, mut bound) = (v.normalized_or(Vec3::X), f64::NEG_INFINITY);
     for _ in 0..ITERATIONS {
         let square = v.length_squared();
         if square <= touching {
@@ -185,6 +187,10 @@ pub(crate) fn gjk(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
         if along > 0.0 && along * along > limit * limit * square {
             return Gap::Far;
         }
+        if along > bound * square.sqrt() {
+            bound = along / square.sqrt();
+            best_direction = v * (1.0 / square.sqrt());
+        }
         // No support point is nearer, or it is one we have.
         if square - along <= 1e-13 * square || simplex.vertices[..simplex.count].iter().any(|x| x.w == next.w)
         {
@@ -192,6 +198,11 @@ pub(crate) fn gjk(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
         }
         simplex.push(next);
         if simplex.reduce() {
+            // A support plane between the origin and the difference was found: the tetrahedron is a sliver, and rounding
+            // alone puts the origin within.
+            if along > 0.0 {
+                break;
+            }
             return Gap::Overlap(simplex);
         }
         let nearer = simplex.nearest();
@@ -202,5 +213,6 @@ pub(crate) fn gjk(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
         best = simplex;
     }
     let (pa, pb) = best.witnesses();
-    Gap::Apart { a: pa, b: pb, between: v }
+    let between = best_direction * v.length();
+    Gap::Apart { a: pa, b: pb, between }
 }

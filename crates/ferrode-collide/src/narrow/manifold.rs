@@ -77,6 +77,22 @@ impl Feature {
                 }
                 f
             }
+            Core::Ellipsoid(_) => Self::corner(body.support(d)),
+            Core::Cone(radius, half) => {
+                let along = d.dot(u);
+                let radial = d - u * along;
+                if along < -core::f64::consts::FRAC_1_SQRT_2 {
+                    return disc(body.center - u * half, -u, radius, radial, body.axis(0));
+                }
+                // The side faces out and up: by the length across, by the radius along the axis.
+                let across = radial.normalized_or(body.axis(0));
+                let side = (across * (2.0 * half) + u * radius).normalized_or(across);
+                if d.dot(side) > 0.9 {
+                    Self::edge(body.center + u * half, body.center - u * half + across * radius)
+                } else {
+                    Self::corner(body.support(d))
+                }
+            }
             Core::Hull(hull, _) => {
                 let l = body.rotation.transpose_mul(d);
                 let i = hull.face_along(l);

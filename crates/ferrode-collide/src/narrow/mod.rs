@@ -5,6 +5,7 @@
 //! rows decides what `Quick` computes.
 
 mod bodies;
+mod body_plane;
 mod body_trimesh;
 mod capsule_capsule;
 mod capsule_cuboid;
@@ -26,9 +27,11 @@ mod epa;
 mod gjk;
 mod manifold;
 mod ray_capsule;
+mod ray_cone;
 mod ray_convex;
 mod ray_cuboid;
 mod ray_cylinder;
+mod ray_ellipsoid;
 mod ray_plane;
 mod ray_sphere;
 mod ray_trimesh;
@@ -44,6 +47,7 @@ mod trimesh_plane;
 mod trimesh_trimesh;
 
 pub use bodies::convex_bodies;
+pub use body_plane::body_plane;
 pub use body_trimesh::body_trimesh;
 pub use capsule_capsule::capsule_capsule;
 pub use capsule_cuboid::capsule_cuboid;
@@ -61,9 +65,11 @@ pub use cylinder_sphere::cylinder_sphere;
 pub use dispatch::{collide, collide_frames, collides};
 pub use distance::{Distance, distance};
 pub use ray_capsule::ray_capsule;
+pub use ray_cone::ray_cone;
 pub use ray_convex::ray_convex;
 pub use ray_cuboid::ray_cuboid;
 pub use ray_cylinder::ray_cylinder;
+pub use ray_ellipsoid::ray_ellipsoid;
 pub use ray_plane::ray_plane;
 pub use ray_sphere::ray_sphere;
 pub use ray_trimesh::ray_trimesh;

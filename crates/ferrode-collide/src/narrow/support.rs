@@ -1,6 +1,6 @@
 //! Convex bodies by their support functions, for the algorithms that need no more.
 
-use crate::{Capsule, Convex, Cuboid, Cylinder, Frame, Shape, Sphere};
+use crate::{Capsule, Convex, Cuboid, Cylinder, Ellipsoid, Frame, Shape, Sphere};
 use ferrode_math::{Mat3, Vec3};
 
 /// The part of a convex body that is left when a margin of constant width is taken off, in its own coordinates.
@@ -14,6 +14,9 @@ pub(crate) enum Core<'a> {
     Cuboid(Vec3),
     /// Radius and half length.
     Cylinder(f64, f64),
+    Ellipsoid(Ellipsoid),
+    /// Radius of the base at −half on the z axis, and half length.
+    Cone(f64, f64),
     /// A polyhedron and the distance of its furthest corner.
     Hull(&'a Convex, f64),
     /// Corners relative to the body's centre, in the pair's coordinates.
@@ -38,6 +41,8 @@ impl<'a> Body<'a> {
             Shape::Cuboid(s) => Self::cuboid(s, frame, origin),
             Shape::Capsule(s) => Self::capsule(s, frame, origin),
             Shape::Cylinder(s) => Self::cylinder(s, frame, origin),
+            Shape::Ellipsoid(s) => Self::new(Core::Ellipsoid(*s), 0.0, frame, origin),
+            Shape::Cone(s) => Self::new(Core::Cone(s.radius(), 0.5 * s.length()), 0.0, frame, origin),
             Shape::Convex(s) => Self::new(Core::Hull(s, s.reach()), 0.0, frame, origin),
             Shape::Plane(_) | Shape::Ray(_) | Shape::TriMesh(_) => return None,
         })
@@ -84,6 +89,16 @@ impl<'a> Body<'a> {
                 let scale = if flat > 0.0 { radius / flat } else { 0.0 };
                 Vec3::new(l.x * scale, l.y * scale, sign(l.z, half))
             }
+            Core::Ellipsoid(e) => e.support(l),
+            Core::Cone(radius, half) => {
+                let flat = (l.x * l.x + l.y * l.y).sqrt();
+                if l.z * 2.0 * half >= radius * flat {
+                    Vec3::new(0.0, 0.0, half)
+                } else {
+                    let scale = if flat > 0.0 { radius / flat } else { 0.0 };
+                    Vec3::new(l.x * scale, l.y * scale, -half)
+                }
+            }
             Core::Hull(hull, _) => hull.support(l),
             Core::Triangle(corners) => {
                 let [a, b, c] = corners.map(|p| p.dot(d));
@@ -106,7 +121,8 @@ impl<'a> Body<'a> {
             Core::Point => 0.0,
             Core::Segment(half) => half,
             Core::Cuboid(h) => h.length(),
-            Core::Cylinder(radius, half) => (radius * radius + half * half).sqrt(),
+            Core::Ellipsoid(e) => e.radii().abs_max(),
+            Core::Cylinder(radius, half) | Core::Cone(radius, half) => (radius * radius + half * half).sqrt(),
             Core::Hull(_, reach) => reach,
             Core::Triangle(p) => p.iter().map(|p| p.length()).fold(0.0, f64::max),
         };

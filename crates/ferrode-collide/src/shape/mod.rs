@@ -1,9 +1,11 @@
 //! What geoms are made of.
 
 mod capsule;
+mod cone;
 mod convex;
 mod cuboid;
 mod cylinder;
+mod ellipsoid;
 mod hull;
 mod plane;
 mod ray;
@@ -11,9 +13,11 @@ mod sphere;
 mod trimesh;
 
 pub use capsule::Capsule;
+pub use cone::Cone;
 pub use convex::Convex;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
+pub use ellipsoid::Ellipsoid;
 pub use plane::Plane;
 pub use ray::Ray;
 pub use sphere::Sphere;
@@ -45,6 +49,10 @@ pub enum Shape {
     Convex(Convex),
     /// A surface of triangles.
     TriMesh(TriMesh),
+    /// An ellipsoid.
+    Ellipsoid(Ellipsoid),
+    /// A cone.
+    Cone(Cone),
 }
 
 /// The kind of a shape: its row and column in the pair matrix.
@@ -67,6 +75,10 @@ pub enum ShapeKind {
     Convex,
     /// [`TriMesh`].
     TriMesh,
+    /// [`Ellipsoid`].
+    Ellipsoid,
+    /// [`Cone`].
+    Cone,
 }
 
 impl Shape {
@@ -81,6 +93,8 @@ impl Shape {
             Self::Ray(_) => ShapeKind::Ray,
             Self::Convex(_) => ShapeKind::Convex,
             Self::TriMesh(_) => ShapeKind::TriMesh,
+            Self::Ellipsoid(_) => ShapeKind::Ellipsoid,
+            Self::Cone(_) => ShapeKind::Cone,
         }
     }
 
@@ -100,6 +114,8 @@ impl Shape {
             Self::Ray(s) => s.aabb(frame),
             Self::Convex(s) => s.aabb(frame),
             Self::TriMesh(s) => s.aabb(frame),
+            Self::Ellipsoid(s) => s.aabb(frame),
+            Self::Cone(s) => s.aabb(frame),
         }
     }
 
@@ -114,6 +130,8 @@ impl Shape {
             Self::Ray(_) => 0.0,
             Self::Convex(s) => s.volume(),
             Self::TriMesh(s) => s.volume(),
+            Self::Ellipsoid(s) => s.volume(),
+            Self::Cone(s) => s.volume(),
         }
     }
 
@@ -130,6 +148,8 @@ impl Shape {
             Self::Cuboid(s) => s.sides().to_array().contains(&0.0),
             Self::Capsule(s) => s.radius() == 0.0,
             Self::Cylinder(s) => s.radius() == 0.0 || s.length() == 0.0,
+            Self::Ellipsoid(s) => s.radii().to_array().contains(&0.0),
+            Self::Cone(s) => s.radius() == 0.0 || s.length() == 0.0,
             Self::Plane(_) | Self::Ray(_) | Self::Convex(_) | Self::TriMesh(_) => false,
         }
     }
