@@ -86,6 +86,7 @@ const CALLED: [&str; 11] = [
 #[test]
 fn every_method_that_the_table_names_exists() {
     let mut known: BTreeSet<String> = CALLED.map(String::from).into();
+    exist!(known, "AMotorMode", AMotorMode: Euler, User);
     exist!(
         known, "Body", Body:
         add_force, add_force_at_position, add_force_at_relative_position, add_relative_force,
@@ -202,6 +203,7 @@ fn every_method_that_the_table_names_exists() {
         known, "JointRef<Universal>", JointRef<Universal>:
         anchor, anchor2, angle1, angle1_rate, angle2, angle2_rate, angles, axis1, axis2
     );
+    exist!(known, "JointType", JointType: Ball, Hinge);
     exist!(
         known, "LimitMotor", LimitMotor:
         set_bounce, set_fudge_factor, set_motor_cfm, set_stop_softness
@@ -212,6 +214,11 @@ fn every_method_that_the_table_names_exists() {
         parameters, rotate, sphere, sphere_total, translate, trimesh, trimesh_total
     );
     exist!(known, "Mat3", Mat3: IDENTITY);
+    exist!(
+        known, "Param", Param:
+        Bounce, Cfm, Erp, FMax, FudgeFactor, HiStop, LoStop, StopCfm, StopErp, SuspensionCfm,
+        SuspensionErp, Vel
+    );
     exist!(known, "Plane", Plane: new);
     exist!(
         known, "Quat", Quat:
@@ -223,6 +230,11 @@ fn every_method_that_the_table_names_exists() {
     known.extend(["Simple", "HASH", "Quadtree", "SweepAndPrune"].map(|kind| format!("SpaceKind::{kind}")));
     exist!(known, "Sphere", Sphere: new);
     exist!(known, "Stepper", Stepper: Direct, Quick);
+    exist!(
+        known, "SurfaceMode", SurfaceMode:
+        APPROX1, APPROX1_1, APPROX1_2, APPROX1_N, BOUNCE, FDIR1, MOTION1, MOTION2, MOTION_N, MU2,
+        ROLLING, SLIP1, SLIP2, SOFT_CFM, SOFT_ERP
+    );
     exist!(known, "TriMesh", TriMesh: new);
     exist!(known, "Vec3", Vec3: normalized);
     exist!(
@@ -243,6 +255,7 @@ fn every_method_that_the_table_names_exists() {
         add_body, body_geoms, geom_info, remove_geom, set_geom_bits, set_geom_enabled, set_geom_pose,
         set_geom_user_data
     );
+    exist!(known, "f64", f64: INFINITY);
     let _ = rotation::from_axis_and_angle;
     known.insert("rotation::from_axis_and_angle".into());
     let _ = rotation::from_euler_angles;
