@@ -124,8 +124,10 @@ fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    number(text).ok().filter(|value| *value > 0.0).ok_or_else(|| "expected a number above 0".to_owned())
+/// A step size: also its reciprocal must be a number.
+fn step_size(text: &str) -> Result<f64, String> {
+    let usable = |value: &f64| *value > 0.0 && value.recip().is_finite();
+    number(text).ok().filter(usable).ok_or_else(|| "expected a number of seconds above 0".to_owned())
 }
 
 fn not_negative(text: &str) -> Result<f64, String> {
@@ -199,7 +201,7 @@ fn setup_args(command: Command) -> Command {
             Arg::new("dt")
                 .long("dt")
                 .value_name("H")
-                .value_parser(positive)
+                .value_parser(step_size)
                 .help("Step size in seconds\n[default: the file's, else 0.001 for SDF and 0.0005 for URDF]"),
         )
         .arg(
@@ -390,6 +392,7 @@ mod tests {
             "ferrode run a.sdf --time nan",
             "ferrode run a.sdf --time 1 --steps 3",
             "ferrode run a.sdf --dt 0",
+            "ferrode run a.sdf --dt 1e-320",
             "ferrode run a.sdf --hold 5",
             "ferrode run a.sdf --hold 0,0",
             "ferrode run a.sdf --hold 5,-1",

@@ -2,7 +2,7 @@
 
 use crate::json::Object;
 use crate::simulation::Simulation;
-use crate::stats::Stats;
+use crate::stats::{Largest, Stats};
 use std::fmt;
 use std::path::Path;
 
@@ -17,8 +17,8 @@ pub struct Summary<'a> {
     geoms: usize,
     warnings: usize,
     quarantined: Vec<String>,
-    joint_of_position: &'a str,
-    joint_of_angle: &'a str,
+    joint_of_position: Option<&'a str>,
+    joint_of_angle: Option<&'a str>,
     stats: &'a Stats,
 }
 
@@ -26,7 +26,9 @@ impl<'a> Summary<'a> {
     /// The figures of a run that is over.
     pub fn new(file: &Path, simulation: &'a Simulation, stats: &'a Stats, stepper: &'static str) -> Self {
         let scene = simulation.scene();
-        let joint = |index: usize| scene.joints.get(index).map_or("", |joint| joint.name.as_str());
+        let joint = |worst: &Largest| {
+            scene.joints.get(worst.index).filter(|_| worst.value > 0.0).map(|joint| joint.name.as_str())
+        };
         let bodies = simulation.world().body_count();
         Self {
             file: file.display().to_string(),
@@ -38,8 +40,8 @@ impl<'a> Summary<'a> {
             geoms: simulation.world().geom_count(),
             warnings: simulation.warning_count(),
             quarantined: simulation.quarantined(),
-            joint_of_position: joint(stats.joint_position_error.index),
-            joint_of_angle: joint(stats.joint_angle_error.index),
+            joint_of_position: joint(&stats.joint_position_error),
+            joint_of_angle: joint(&stats.joint_angle_error),
             stats,
         }
     }
@@ -125,13 +127,13 @@ impl fmt::Display for Summary<'_> {
         )?;
         line("penetration", self.penetration())?;
         line("joint error", self.joint_error())?;
-        line("sleeping", format!("{} bodies", stats.sleeping))?;
+        line("sleeping", bodies(stats.sleeping))?;
         let names = if self.quarantined.is_empty() {
             String::new()
         } else {
             format!(": {}", self.quarantined.join(", "))
         };
-        line("quarantined", format!("{} bodies{names}", stats.quarantined))?;
+        line("quarantined", format!("{}{names}", bodies(stats.quarantined)))?;
         if stats.solver_failures > 0 {
             line("solver failures", format!("{} islands solved in part only", stats.solver_failures))?;
         }
@@ -158,21 +160,30 @@ impl Summary<'_> {
         }
         let (position, angle) = (&self.stats.joint_position_error, &self.stats.joint_angle_error);
         let mut text = format!("{} at most", metres(position.value));
-        if position.value > 0.0 {
-            text += &format!(" ({}, at {} s)", self.joint_of_position, round(position.time));
+        if let Some(joint) = self.joint_of_position {
+            text += &format!(" ({joint}, at {} s)", round(position.time));
         }
         text += &format!("; {} rad at most", round(angle.value));
-        if angle.value > 0.0 {
-            text += &format!(" ({}, at {} s)", self.joint_of_angle, round(angle.time));
+        if let Some(joint) = self.joint_of_angle {
+            text += &format!(" ({joint}, at {} s)", round(angle.time));
         }
         text
     }
 }
 
+/// "1 body", "2 bodies".
+fn bodies(count: usize) -> String {
+    format!("{count} {}", if count == 1 { "body" } else { "bodies" })
+}
+
 /// Four digits, with an exponent only where zeros would fill the line.
 pub fn round(value: f64) -> String {
     let size = value.abs();
-    if value == 0.0 || !value.is_finite() {
+    if value == 0.0 {
+        // Not "-0".
+        return "0".to_owned();
+    }
+    if !value.is_finite() {
         return value.to_string();
     }
     if !(1e-4..1e7).contains(&size) {
@@ -218,6 +229,7 @@ mod tests {
     fn four_digits_count() {
         let expected = [
             (0.0, "0"),
+            (-0.0, "0"),
             (5.0, "5"),
             (12.3456, "12.35"),
             (-0.0123456, "-0.01235"),

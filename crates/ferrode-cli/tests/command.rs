@@ -52,7 +52,7 @@ fn a_world_that_leaves_the_numbers_is_told() {
     let done = ferrode(&["run", &file, "--steps", "3"]);
     assert_eq!(done.code, 1, "{}{}", done.out, done.err);
     assert!(done.err.contains("did not stay finite: arm::bar"), "{}", done.err);
-    assert!(done.out.contains("quarantined       1 bodies: arm::bar"), "{}", done.out);
+    assert!(done.out.contains("quarantined       1 body: arm::bar"), "{}", done.out);
     assert_eq!(ferrode(&["run", &file, "--steps", "3", "--quiet"]).code, 1);
     let compared = ferrode(&["compare", &file, "--steps", "3"]);
     assert_eq!(compared.code, 1);
