@@ -2,7 +2,7 @@
 //! Reads worlds and robots from [SDFormat](http://sdformat.org/spec) 1.4 to 1.12 and
 //! [URDF](http://wiki.ros.org/urdf/XML) files.
 //!
-//! [`load`] gives a [`Scene`](description::Scene): what the file says, free of its format, with all references
+//! [`load`] gives a [`Scene`]: what the file says, free of its format, with all references
 //! resolved, and the warnings that came up. Whatever changes physics and is not understood is a warning with file,
 //! line and element; [`LoadOptions::strict`] makes it an error.
 //!
