@@ -18,32 +18,32 @@ const BALL_START: Vec3 = Vec3::new(0.5, 0.0, 0.25);
 type End = (Vec3, Vec3);
 
 fn by_hand() -> Result<End, Error> {
-    // 1. Create a dynamics world.
+    // 1. A world for the dynamics.
     let mut world = dynamics::World::new();
     world.set_gravity(Vec3::new(0.0, 0.0, -9.81))?;
 
-    // 2. Create bodies in the dynamics world.
+    // 2. Its bodies.
     let bob = world.create_body();
     let ball = world.create_body();
     world.body_mut(bob)?.set_mass(&Mass::cuboid(800.0, Vec3::splat(0.4))?)?;
     world.body_mut(ball)?.set_mass(&Mass::sphere(500.0, 0.25)?)?;
 
-    // 3. Set the state (position etc.) of all bodies.
+    // 3. Where each body is, and how it moves.
     world.body_mut(bob)?.set_position(BOB_START)?;
     world.body_mut(ball)?.set_position(BALL_START)?;
 
-    // 4. Create joints in the dynamics world.
+    // 4. Its joints, which link nothing yet.
     let hinge = world.create_joint::<Hinge>(None)?;
 
-    // 5. Attach the joints to the bodies. `None` is the static world.
+    // 5. Which bodies the joints link. `None` is the static world.
     world.attach(hinge, Some(bob), None)?;
 
-    // 6. Set the parameters of all joints: in world coordinates, with the bodies where they are now.
+    // 6. The joints' anchors, axes and limits: in world coordinates, with the bodies where they are now.
     let mut pendulum = world.joint_mut::<Hinge>(hinge)?;
     pendulum.set_anchor(PIVOT)?;
     pendulum.set_axis(Vec3::Y)?;
 
-    // 7. Create a collision world and collision geometry objects, as necessary.
+    // 7. A world for collisions, and shapes in it.
     let mut colliders = collide::Colliders::new();
     let space = colliders.add_space(None, SpaceKind::HASH)?;
     colliders.add_geom(Some(space), Geom::new(Plane::new(Vec3::Z, 0.0)?))?;
@@ -53,22 +53,22 @@ fn by_hand() -> Result<End, Error> {
     ];
     let body_of = |geom: GeomKey| geoms.iter().find(|(g, _)| *g == geom).map(|(_, body)| *body);
 
-    // 8. Create a joint group to hold the contact joints.
+    // 8. A group for the joints that contacts will make.
     let contacts = world.create_group();
 
-    // 9. Loop.
+    // 9. The loop.
     for step in 0..STEPS {
-        // Apply forces to the bodies as necessary.
+        // Push.
         if step < 10 {
             world.body_mut(bob)?.add_force(Vec3::new(0.0, 0.0, -100.0))?;
         }
 
-        // Adjust the joint parameters as necessary: brake the pendulum for the last second.
+        // Change joints: brake the pendulum for the last second.
         if step == STEPS - 100 {
             world.joint_mut::<Hinge>(hinge)?.set_motor(0.0, 50.0)?;
         }
 
-        // Call collision detection.
+        // Find what touches.
         for (geom, body) in geoms {
             colliders.set_pose(geom, world.body(body)?.pose())?;
         }
@@ -77,21 +77,21 @@ fn by_hand() -> Result<End, Error> {
             colliders.contacts(a, b, CollideOptions::new(4), &mut found);
         })?;
 
-        // Create a contact joint for every collision point, and put it in the contact joint group.
+        // Make a contact joint of each point, in the group.
         for (a, b, contact) in found {
             let contact = Contact::at(contact.point, Surface::with_friction(0.5));
             let joint = world.create_contact(Some(contacts), &contact)?;
             world.attach(joint, body_of(a), body_of(b))?;
         }
 
-        // Take a simulation step.
+        // Step.
         world.step(Stepper::Direct, STEP)?;
 
-        // Remove all joints in the contact joint group.
+        // The contacts have done their work: empty the group.
         world.empty_group(contacts)?;
     }
 
-    // 10. Destroy the dynamics and collision worlds: they go out of scope here.
+    // 10. Both worlds end here, as they go out of scope.
     Ok((world.body(bob)?.position(), world.body(ball)?.position()))
 }
 

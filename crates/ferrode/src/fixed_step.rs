@@ -4,8 +4,8 @@ use ferrode_dynamics::Error;
 
 /// Turns frame times into whole steps of constant size.
 ///
-/// A variable step size is a one-way trip to a headache (ODE manual): resting contacts settle at another depth for each
-/// size, so they jitter. Step with a constant size instead, as often as the frame time asks, and draw the state
+/// Steps of varying size are bad for a simulation (ODE manual, "Variable step size"): a resting contact settles at another
+/// depth for each size, so it trembles. Step with a constant size instead, as often as the frame time asks, and draw the state
 /// between the last two steps.
 ///
 /// ```
