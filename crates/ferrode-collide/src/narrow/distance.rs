@@ -50,10 +50,14 @@ fn body_distance(a: &Body<'_>, b: &Body<'_>, origin: Vec3) -> Distance {
     }
     let (pa, pb, between) = match gjk(a, b, f64::INFINITY) {
         Gap::Apart { a, b, between } => (a, b, between),
-        // Not reached: bodies that overlap touch.
-        Gap::Far | Gap::Overlap(_) => (a.center, b.center, a.center - b.center),
+        // Between touching and not, to the last bit.
+        Gap::Overlap(simplex) => {
+            let (a, b) = simplex.witnesses();
+            (a, b, Vec3::ZERO)
+        }
+        Gap::Far => (a.center, b.center, a.center - b.center),
     };
-    let normal = between.normalized_or(Vec3::X);
+    let normal = between.normalized().unwrap_or_else(|| (a.middle() - b.middle()).normalized_or(Vec3::X));
     Distance {
         distance: between.length() - a.margin - b.margin,
         a: pa - normal * a.margin + origin,

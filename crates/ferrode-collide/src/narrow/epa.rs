@@ -117,8 +117,8 @@ impl Polytope {
             return false;
         }
         let mut remaining = 0;
-        for i in 0..self.face_count {
-            if !marked[i] {
+        for (i, &gone) in marked[..self.face_count].iter().enumerate() {
+            if !gone {
                 self.faces[remaining] = self.faces[i];
                 remaining += 1;
             }

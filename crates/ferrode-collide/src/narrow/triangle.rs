@@ -68,7 +68,7 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     let mut kept = first;
     for i in first..out.len() {
         let mut c = out.added()[i];
-        if !nearer_elsewhere(facet, middle, &c) {
+        if !nearer_elsewhere(body, facet, middle, &c) {
             c.side2 = facet.index;
             out.added()[kept] = c;
             kept += 1;
@@ -97,17 +97,16 @@ fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Co
     out.push(lowest + n * (0.5 * depth), n, depth);
 }
 
-/// Whether the point of the body lies less deep behind the triangle beyond a convex edge, which also has the body's
-/// middle before it: then that one pushes it out.
-fn nearer_elsewhere(facet: &Facet, middle: Vec3, c: &GeomContact) -> bool {
+/// Whether the body leaves sooner past the triangle beyond a convex edge, which also has its middle before it: then a
+/// contact with this one's face would push it the long way.
+fn nearer_elsewhere(body: &Body<'_>, facet: &Facet, middle: Vec3, c: &GeomContact) -> bool {
     if c.point.normal.dot(facet.normal) < 1.0 - SAME {
         return false;
     }
-    let point = c.point.position - c.point.normal * (0.5 * c.point.depth);
     (0..3).any(|e| match facet.neighbours[e] {
-        Neighbour::Convex(other) => {
-            let depth = other.dot(facet.corners[e] - point);
-            depth >= 0.0 && depth < c.point.depth * (1.0 - 1e-6) && other.dot(middle - facet.corners[e]) > 0.0
+        Neighbour::Convex(other) if other.dot(middle - facet.corners[e]) > 0.0 => {
+            let depth = other.dot(facet.corners[e] - body.support(-other)) + body.margin;
+            depth >= 0.0 && depth < c.point.depth * (1.0 - 1e-6)
         }
         _ => false,
     })
