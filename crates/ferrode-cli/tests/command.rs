@@ -298,3 +298,30 @@ fn recorded_of(file: &str, name: &str, options: &[&str]) -> Table {
     assert_eq!(done.code, 0, "{line:?}: {}", done.err);
     Table::from_csv(&std::fs::read_to_string(out).unwrap())
 }
+
+#[test]
+fn models_are_found_where_options_and_environment_say() {
+    let folder = scratch("models");
+    std::fs::create_dir_all(folder.join("crate")).unwrap();
+    std::fs::copy(data("box.sdf"), folder.join("crate/model.sdf")).unwrap();
+    std::fs::write(
+        folder.join("crate/model.config"),
+        "<?xml version=\"1.0\"?><model><name>crate</name><sdf version=\"1.9\">model.sdf</sdf></model>",
+    )
+    .unwrap();
+    let file = scratch("include.sdf");
+    let text =
+        "<sdf version=\"1.9\"><world name=\"w\"><include><uri>model://crate</uri></include></world></sdf>";
+    std::fs::write(&file, text).unwrap();
+    let file = file.to_str().unwrap();
+    let lost = ferrode(&["run", file, "--steps", "1"]);
+    assert!(lost.code == 3 && lost.err.contains("model://crate"), "{}{}", lost.out, lost.err);
+    let one_body = "bodies            1 that move";
+    let found = ferrode(&["run", file, "--steps", "1", "--model-path", folder.to_str().unwrap()]);
+    assert!(found.code == 0 && found.out.contains(one_body), "{}{}", found.out, found.err);
+    for variable in ["GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH"] {
+        let found =
+            common::ferrode_with(&["run", file, "--steps", "1"], &[(variable, folder.to_str().unwrap())]);
+        assert!(found.code == 0 && found.out.contains(one_body), "{variable}: {}{}", found.out, found.err);
+    }
+}

@@ -14,7 +14,16 @@ pub struct Done {
 
 /// Runs the command, its output piped.
 pub fn ferrode(line: &[&str]) -> Done {
-    let output = Command::new(env!("CARGO_BIN_EXE_ferrode")).args(line).output().unwrap();
+    ferrode_with(line, &[])
+}
+
+/// As [`ferrode`], with environment variables.
+pub fn ferrode_with(line: &[&str], variables: &[(&str, &str)]) -> Done {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ferrode"));
+    for variable in ["GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH", "ROS_PACKAGE_PATH"] {
+        command.env_remove(variable);
+    }
+    let output = command.args(line).envs(variables.iter().copied()).output().unwrap();
     Done {
         code: output.status.code().unwrap(),
         out: String::from_utf8(output.stdout).unwrap(),
