@@ -39,6 +39,7 @@ pub mod description;
 mod draft;
 pub mod error;
 mod frames;
+mod heightmap;
 mod inertia;
 mod merge;
 mod mesh;

@@ -7,6 +7,7 @@ use earcut::Earcut;
 use ferrode_math::Vec3;
 
 use crate::description::{Geometry, Mesh};
+use crate::heightmap;
 
 /// A surface of triangles, counter-clockwise as seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -18,14 +19,17 @@ pub struct Triangles {
 }
 
 impl Geometry {
-    /// The triangles of a mesh or polyline, in the collision's own frame; `None` for other shapes.
+    /// The triangles of a mesh, polyline or heightmap, in the collision's own frame; `None` for other shapes.
     ///
     /// # Errors
-    /// Why the mesh cannot be read, or the outlines enclose nothing.
+    /// Why the file cannot be read, or the outlines enclose nothing.
     pub fn triangles(&self) -> Option<Result<Triangles, String>> {
         match self {
             Geometry::Mesh(mesh) => Some(load(mesh)),
             Geometry::Polyline { outlines, height } => Some(extrude(outlines, *height)),
+            Geometry::Heightmap { path: Some(path), size, position, .. } => {
+                Some(heightmap::surface(path, *size, *position))
+            }
             _ => None,
         }
     }

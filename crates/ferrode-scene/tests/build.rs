@@ -564,7 +564,7 @@ fn what_the_engine_lacks_is_named() {
     let scene = load_str("test.sdf", text, &options()).unwrap().scene;
     let world = build(&scene, &BuildOptions::default()).unwrap();
     let lines: Vec<(Option<usize>, &str)> = world.warnings.iter().map(|w| (w.line(), w.message())).collect();
-    assert_eq!(lines[0], (Some(3), "collision `c` is left out: the shape `image` is not supported yet"));
+    assert_eq!(lines[0], (Some(3), "collision `c` is left out: the shape `image` is not supported"));
     assert_eq!(lines[1].0, Some(5));
     assert!(world.joint("s").unwrap().key().is_none());
     let strict = BuildOptions { strict: true, ..BuildOptions::default() };
@@ -657,4 +657,34 @@ fn all_solids_come_to_rest() {
         );
         assert!(world.link("l").unwrap().velocity().0.length() < 0.05, "{shape}");
     }
+}
+
+#[test]
+fn terrain_carries_what_falls_on_it() {
+    // A valley: 0.5 high at both ends of x, 0 in the middle. A ball rolls in it.
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("valley.png");
+    let image =
+        image::GrayImage::from_fn(17, 17, |x, _| image::Luma([(x as i32 - 8).unsigned_abs() as u8 * 31]));
+    image.save(&path).unwrap();
+    let terrain = format!(
+        "<model name='t'><static>1</static><link name='t'><collision name='c'><geometry><heightmap><uri>{}</uri>
+         <size>8 8 2</size><pos>0 0 -1</pos></heightmap></geometry></collision></link></model>",
+        path.display()
+    );
+    let mut world = world(&format!(
+        "{terrain}<model name='m'><pose>1.5 0.3 0.09 0 0 0</pose><link name='l'><velocity_decay><linear>0.01</linear></velocity_decay>
+         <collision name='c'><geometry><sphere><radius>0.3</radius></sphere></geometry></collision></link></model>"
+    ));
+    assert!(world.warnings.is_empty(), "{:?}", world.warnings);
+    let slope = 0.5f64 * 248.0 / 255.0;
+    let mut lowest = f64::INFINITY;
+    for _ in 0..600 {
+        world.step().unwrap();
+        let at = world.link("l").unwrap().pose().position;
+        assert!(at.x.abs() < 1.6, "{at:?}");
+        // Distance of the ball's centre from the slope on its side.
+        lowest = lowest.min((at.z + 1.0 - slope * at.x.abs()) / (1.0 + slope * slope).sqrt());
+    }
+    assert!((lowest - 0.3).abs() < 0.02, "{lowest}");
+    assert!(!world.world.contacts().is_empty());
 }

@@ -8,8 +8,8 @@ use crate::error::Notes;
 
 /// The shape of a collision; `None`, with a warning, if the engine has none.
 ///
-/// Ellipsoids and cones become polyhedra, and a warning says how far these lie within. Meshes and outlines that are
-/// not convex become surfaces of triangles.
+/// Ellipsoids and cones become polyhedra, and a warning says how far these lie within. Meshes, terrain and outlines
+/// that are not convex become surfaces of triangles.
 pub(super) fn shape(collision: &Collision, notes: &mut Notes) -> Result<Option<Shape>, Error> {
     Ok(Some(match &collision.geometry {
         Geometry::Cuboid { size } => Cuboid::new(*size)?.into(),
@@ -39,15 +39,20 @@ pub(super) fn shape(collision: &Collision, notes: &mut Notes) -> Result<Option<S
             leave_out(collision, "its mesh has no file", notes);
             return Ok(None);
         }
-        Geometry::Mesh(_) | Geometry::Polyline { .. } => return triangles(collision, notes),
+        Geometry::Heightmap { path: None, .. } => {
+            leave_out(collision, "its image has no file", notes);
+            return Ok(None);
+        }
+        Geometry::Mesh(_) | Geometry::Polyline { .. } | Geometry::Heightmap { .. } => {
+            return triangles(collision, notes);
+        }
         Geometry::Plane { .. } => {
             leave_out(collision, "only static models have planes", notes);
             return Ok(None);
         }
         Geometry::Empty => return Ok(None),
-        Geometry::Heightmap { .. } | Geometry::Image { .. } => {
-            let why = format!("the shape `{}` is not supported yet", collision.geometry.kind());
-            leave_out(collision, &why, notes);
+        Geometry::Image { .. } => {
+            leave_out(collision, "the shape `image` is not supported", notes);
             return Ok(None);
         }
     }))
