@@ -31,6 +31,7 @@ pub mod filter;
 mod frame;
 mod geom;
 pub mod narrow;
+mod query;
 pub mod shape;
 pub mod space;
 
@@ -38,6 +39,7 @@ pub use colliders::{ColliderError, Colliders, GeomKey, Item, SpaceKey, SpaceKind
 pub use contact::{CollideOptions, Contacts, GeomContact};
 pub use frame::Frame;
 pub use geom::Geom;
+pub use query::{RayHit, point_depth};
 pub use shape::{
     Capsule, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Plane, Ray, Shape, ShapeError, ShapeKind, Sphere,
     TriMesh,

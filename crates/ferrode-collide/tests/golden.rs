@@ -224,3 +224,22 @@ fn rays_hit_polyhedra_where_they_should() {
     }
     assert!(replayed >= 10, "{replayed}");
 }
+
+/// Depths of points, but for those outside a box, where libode 0.16.2 errs and later versions give the distance.
+#[test]
+fn point_depths_are_libodes() {
+    let record = Record::open(FILES);
+    let mut compared = 0;
+    for case in record.list("point_depth") {
+        let (shape, frame) = record.geom(&case["geom"]).unwrap();
+        let (want, p) = (number(&case["depth"]), vector(&case["point"]));
+        let got = ferrode_collide::point_depth(&shape, &frame, p).unwrap();
+        if matches!(shape, Shape::Cuboid(_)) && want < 0.0 {
+            assert!(got < 0.0, "{case}: {got}");
+        } else {
+            assert!((got - want).abs() < TOLERANCE, "{case}: {got}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 20, "{compared}");
+}

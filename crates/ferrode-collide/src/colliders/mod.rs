@@ -16,6 +16,13 @@ use ferrode_math::{Aabb, Pose};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct GeomKey(Key);
 
+impl GeomKey {
+    /// A number that no other geom of this process has, nor had; later geoms of one container have larger ones.
+    pub fn serial(self) -> u64 {
+        self.0.serial
+    }
+}
+
 /// Names a space in a [`Colliders`] and its clones. Never matches another space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SpaceKey(Key);

@@ -117,6 +117,25 @@ impl Colliders {
         });
     }
 
+    /// Brings a space up to date for questions that change nothing.
+    pub(crate) fn refresh(&mut self, space: SpaceKey) -> Result<(), ColliderError> {
+        self.space_node(space).ok_or(ColliderError::NoSuchSpace(space))?;
+        self.clean(space.0.slot);
+        Ok(())
+    }
+
+    /// Reports the enabled members of a space whose boxes pass `test`, in the order of the space.
+    pub(crate) fn members_passing(
+        &self,
+        space: SpaceKey,
+        test: &dyn Fn(&Aabb) -> bool,
+        report: &mut dyn FnMut(Item),
+    ) {
+        if let Some(node) = self.space_node(space) {
+            node.broad.get().visit(&self.table, test, &mut |id| report(self.item(id)));
+        }
+    }
+
     /// The proxy of a slot with its present box.
     fn current_proxy(&self, slot: u32) -> Proxy {
         let mut proxy = *self.table.get(ProxyId(slot));

@@ -1,6 +1,7 @@
 use super::tree::AabbTree;
 use super::{BroadPhase, Members, Proxy, ProxyId, ProxyTable, Scratch};
 use crate::filter::passes;
+use ferrode_math::Aabb;
 
 /// Leaves are larger than the geoms by this part of their size, so that small moves change nothing.
 const FAT: f64 = 0.1;
@@ -153,6 +154,23 @@ impl BroadPhase for BvhSpace {
             consider(id);
         }
         self.tree.query(&proxy.aabb, |id| consider(ProxyId(id)));
+    }
+
+    /// In the order of the tree.
+    fn visit(&self, table: &ProxyTable, test: &dyn Fn(&Aabb) -> bool, report: &mut dyn FnMut(ProxyId)) {
+        let mut consider = |id: ProxyId| {
+            let member = table.get(id);
+            if member.enabled && test(&member.aabb) {
+                report(id);
+            }
+        };
+        for &id in &self.unbounded {
+            consider(id);
+        }
+        self.tree.walk(test, |id| {
+            consider(ProxyId(id));
+            true
+        });
     }
 
     fn members(&self) -> &Members {

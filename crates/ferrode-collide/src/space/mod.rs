@@ -12,6 +12,8 @@ mod simple;
 mod sweep_and_prune;
 pub mod tree;
 
+use ferrode_math::Aabb;
+
 pub use bvh::BvhSpace;
 pub use hash::HashSpace;
 pub use proxy::{Members, Proxy, ProxyId, ProxyTable};
@@ -45,6 +47,15 @@ pub trait BroadPhase {
     );
     /// Notes that a member was switched on or off.
     fn switched(&mut self, _id: ProxyId) {}
+    /// Reports every enabled member whose box passes `test`. If a box passes, so must all boxes around it.
+    fn visit(&self, table: &ProxyTable, test: &dyn Fn(&Aabb) -> bool, report: &mut dyn FnMut(ProxyId)) {
+        for id in self.members().iter(table) {
+            let member = table.get(id);
+            if member.enabled && test(&member.aabb) {
+                report(id);
+            }
+        }
+    }
     /// The members, newest or last moved first.
     fn members(&self) -> &Members;
     /// The members in the order in which ODE counts them, where that is not the order of the list.

@@ -44,6 +44,7 @@ write(
         "cases": list(cases(PRIMITIVES, PRIMITIVES, 1)),
         "box_box": full["box_box"],
         "closest_line_segment_points": full["closest_line_segment_points"],
+        "point_depth": full["point_depth"],
     },
 )
 write("convex.json", {"hulls": full["hulls"], "cases": list(cases(PRIMITIVES + ["convex"], ["convex"], 0.6))})

@@ -1,0 +1,103 @@
+//! Rays and points against whole containers.
+
+use ferrode_collide::*;
+use ferrode_math::random::OdeRandom;
+use ferrode_math::{Pose, Quat, Vec3};
+
+fn random_world(kind: SpaceKind) -> (Colliders, SpaceKey, Vec<GeomKey>) {
+    let mut random = OdeRandom::new(11);
+    let mut number = || f64::from(random.next_u32()) / 4294967296.0 * 2.0 - 1.0;
+    let mut colliders = Colliders::new();
+    let space = colliders.add_space(None, kind).unwrap();
+    let inner = colliders.add_space(Some(space), kind).unwrap();
+    let mut keys = Vec::new();
+    for i in 0..150 {
+        let size = 0.2 + 0.3 * number().abs();
+        let shape: Shape = match i % 5 {
+            0 => Sphere::new(size).unwrap().into(),
+            1 => Cuboid::new(Vec3::new(size, 2.0 * size, size)).unwrap().into(),
+            2 => Capsule::new(size, size).unwrap().into(),
+            3 => Cylinder::new(size, size).unwrap().into(),
+            _ => Cone::new(size, size).unwrap().into(),
+        };
+        let at = Vec3::new(number(), number(), number()) * 5.0;
+        let turn = Quat::from_axis_angle(Vec3::new(number(), number(), 1.0), 3.0 * number());
+        let parent = if i % 3 == 0 { inner } else { space };
+        let key = colliders.add_geom(Some(parent), Geom::new(shape).at(Pose::new(at, turn))).unwrap();
+        keys.push(key);
+    }
+    colliders.set_enabled(keys[7], false).unwrap();
+    keys.push(colliders.add_geom(Some(space), Geom::new(Plane::new(Vec3::Z, -4.0).unwrap())).unwrap());
+    (colliders, space, keys)
+}
+
+#[test]
+fn rays_agree_with_asking_each_geom() {
+    let mut hits = Vec::new();
+    for kind in [SpaceKind::Simple, SpaceKind::HASH, SpaceKind::Bvh] {
+        let (mut colliders, space, keys) = random_world(kind);
+        let mut random = OdeRandom::new(5);
+        let mut number = || f64::from(random.next_u32()) / 4294967296.0 * 2.0 - 1.0;
+        let mut total = 0;
+        for round in 0..600 {
+            let from = Vec3::new(number(), number(), number()) * 7.0;
+            // Some along an axis, where a slope is zero.
+            let direction = match round % 4 {
+                0 => Vec3::Z * number(),
+                _ => Vec3::new(number(), number(), number()) - from * 0.1,
+            };
+            let ray = Geom::new(Ray::new(12.0).unwrap()).at(Ray::pose(from, direction).unwrap());
+            let ray = colliders.add_geom(None, ray).unwrap();
+            let mut want = Vec::new();
+            for &key in &keys {
+                let mut list = Vec::new();
+                colliders.geom_contacts(ray, key, CollideOptions::new(4), &mut list);
+                if colliders.geom(key).unwrap().is_enabled() {
+                    want.extend(list.iter().map(|c| (key, c.point.depth)));
+                }
+            }
+            colliders.remove_geom(ray).unwrap();
+            want.sort_by(|a, b| a.1.total_cmp(&b.1));
+            colliders.ray_cast_all(space, from, direction, 12.0, |_, _| true, &mut hits).unwrap();
+            let got: Vec<_> = hits.iter().map(|h| (h.geom, h.distance)).collect();
+            assert_eq!(got, want);
+            let first = colliders.ray_cast(space, from, direction, 12.0, |_, _| true).unwrap();
+            assert_eq!(first.map(|h| h.geom), want.first().map(|w| w.0));
+            // Looking through the first geom, one sees the second.
+            if let Some(first) = first {
+                let second =
+                    colliders.ray_cast(space, from, direction, 12.0, |key, _| key != first.geom).unwrap();
+                assert_eq!(second.map(|h| h.geom), want.get(1).map(|w| w.0));
+            }
+            total += want.len();
+        }
+        assert!(total > 300, "{total}");
+        assert_eq!(colliders.ray_cast(space, Vec3::ZERO, Vec3::ZERO, 1.0, |_, _| true), Ok(None));
+    }
+}
+
+#[test]
+fn points_agree_with_asking_each_geom() {
+    for kind in [SpaceKind::HASH, SpaceKind::Bvh] {
+        let (mut colliders, space, keys) = random_world(kind);
+        let mut random = OdeRandom::new(9);
+        let mut number = || f64::from(random.next_u32()) / 4294967296.0 * 2.0 - 1.0;
+        let mut total = 0;
+        for _ in 0..500 {
+            let p = Vec3::new(number(), number(), number()) * 5.0;
+            let mut want: Vec<_> = keys
+                .iter()
+                .filter(|&&key| colliders.geom(key).unwrap().is_enabled())
+                .filter(|&&key| colliders.point_depth(key, p).is_some_and(|d| d >= 0.0))
+                .copied()
+                .collect();
+            let mut got = Vec::new();
+            colliders.geoms_at(space, p, |key, _| got.push(key)).unwrap();
+            got.sort();
+            want.sort();
+            assert_eq!(got, want);
+            total += got.len();
+        }
+        assert!(total > 50, "{total}");
+    }
+}
