@@ -14,10 +14,52 @@ pub struct StepReport {
     pub rows: usize,
     /// Rows of the largest island.
     pub largest_island_rows: usize,
-    /// Islands in which `Direct` gave up: the rows from the failing one on got no force, as in ODE.
+    /// Islands whose forces `Direct` could not certify ([`IslandSolve::certified`]), by any of its methods.
     pub lcp_failures: usize,
+    /// How `Direct` solved each island that has rows, in the order of the islands.
+    pub solves: Vec<IslandSolve>,
     /// Bodies that this step took out of the simulation because they or the forces on them were not finite.
     pub quarantined: Vec<BodyKey>,
+}
+
+/// The method that found an island's forces in `Direct`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum DirectMethod {
+    /// Dantzig's pivoting on the dense matrix.
+    #[default]
+    Dantzig,
+    /// Block pivoting on a sparse factorisation.
+    BlockPivoting,
+}
+
+/// How `Direct` solved an island.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct IslandSolve {
+    /// Constraint rows.
+    pub rows: usize,
+    /// The method.
+    pub method: DirectMethod,
+    /// Factorisations, whole or of the part that changed. Dantzig's method keeps one up to date.
+    pub factorisations: u32,
+    /// How many of them block pivoting took with line search, because the number of wrong rows would not fall.
+    pub newton_steps: u32,
+    /// The natural residual max |λ − proj(λ − w/A)|, A being the diagonal, with friction bounds as they were frozen.
+    pub residual: f64,
+    /// The largest force of a row.
+    pub largest_force: f64,
+    /// Whether the method chosen first did not get to the end, and another had to help.
+    pub fell_back: bool,
+    /// Blocks of 6×6 numbers in the sparse factor; 0 for the dense method.
+    pub factor_blocks: usize,
+}
+
+impl IslandSolve {
+    /// Whether the residual is at most 1e-10 (1 + the largest force).
+    pub fn certified(&self) -> bool {
+        self.residual <= 1e-10 * (1.0 + self.largest_force)
+    }
 }
 
 impl StepReport {

@@ -74,6 +74,13 @@ impl Clone for Scratch {
     }
 }
 
+impl Island {
+    /// The world's slot of a body, or `NIL`.
+    pub fn slot(&self, place: u32) -> u32 {
+        self.slots.get(place as usize).copied().unwrap_or(crate::arena::NIL)
+    }
+}
+
 impl World {
     /// Advances the world by `h` seconds.
     ///
@@ -108,6 +115,7 @@ impl World {
         self.auto_disable_bodies(h);
         self.find_islands(islands);
         let ctx = self.step_context(h);
+        direct::begin_step(direct);
         let (mut first_body, mut first_joint) = (0, 0);
         for &(body_end, joint_end) in &islands.ends {
             let bodies = &islands.bodies[first_body..body_end];
@@ -123,7 +131,15 @@ impl World {
             }
             self.write_rows(island, &ctx);
             let solved = match stepper {
-                Stepper::Direct => direct::solve(island, h, direct),
+                Stepper::Direct => {
+                    let number = report.islands;
+                    let (solved, island_solve) =
+                        direct::solve(island, h, &self.params.direct, number, direct);
+                    if island_solve.rows > 0 {
+                        report.solves.push(island_solve);
+                    }
+                    solved
+                }
                 Stepper::Quick => quick::solve(island, h, &self.params.quick, random, quick),
             };
             report.count_island(bodies.len(), island.rows.len(), solved);
@@ -134,6 +150,7 @@ impl World {
             }
             self.move_bodies(bodies, island, stepper, h, &mut report);
         }
+        direct::end_step(direct);
         self.scratch = scratch;
         Ok(report)
     }

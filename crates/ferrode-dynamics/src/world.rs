@@ -6,6 +6,7 @@ use crate::ends::{Ends, Frame};
 use crate::error::{finite, finite_number, not_nan};
 use crate::group::{GroupKey, JointGroup};
 use crate::joint::{Joint, JointKind, Link, Node};
+use crate::solve::direct::DirectSettings;
 use crate::step::Scratch;
 use crate::{AutoDisable, Damping, Error, JointFeedback, JointKey, JointType};
 use ferrode_math::Vec3;
@@ -41,6 +42,7 @@ pub(crate) struct Params {
     pub contact_max_correcting_velocity: f64,
     pub contact_surface_layer: f64,
     pub quick: QuickSettings,
+    pub direct: DirectSettings,
 }
 
 impl Default for Params {
@@ -55,6 +57,7 @@ impl Default for Params {
             contact_max_correcting_velocity: f64::INFINITY,
             contact_surface_layer: 0.0,
             quick: QuickSettings::default(),
+            direct: DirectSettings::default(),
         }
     }
 }
@@ -232,6 +235,16 @@ impl World {
         finite_number("over-relaxation", settings.over_relaxation)?;
         self.params.quick = settings;
         Ok(())
+    }
+
+    /// How `Direct` solves.
+    pub fn direct(&self) -> &DirectSettings {
+        &self.params.direct
+    }
+
+    /// Sets how `Direct` solves.
+    pub fn set_direct(&mut self, settings: DirectSettings) {
+        self.params.direct = settings;
     }
 
     /// The state of the random generator that shuffles `Quick`'s rows.

@@ -3,6 +3,7 @@
 //!
 //! - [`problem`] states the problem: `w = A x - b`, each unknown within its bounds or its slack pushing it there.
 //! - [`dantzig`] solves it exactly by pivoting; [`sor`] approximately by projected successive over-relaxation.
+//! - [`pivoting`] solves it exactly, for mechanisms of any size, on the factorisation in [`sparse`].
 //! - [`residual`] says how good an answer is.
 //! - [`dense`], [`cholesky`], [`ldlt`] are the dense matrix functions that ODE programs know.
 //!
@@ -16,17 +17,21 @@ mod envelope;
 mod error;
 mod kernel;
 pub mod ldlt;
+pub mod pivoting;
 pub mod problem;
 pub mod residual;
 pub mod sor;
+pub mod sparse;
 
 pub use dantzig::{
     DantzigOptions, DantzigReport, DantzigStatus, DantzigWorkspace, solve_dantzig, solve_dantzig_with,
 };
 pub use error::LcpError;
+pub use pivoting::{PivotingOptions, PivotingReport, PivotingWorkspace, RowState, SparseLcp, solve_pivoting};
 pub use problem::BoxedLcp;
 pub use residual::natural_residual;
 pub use sor::{
     DynamicIterations, InfTimesZero, NO_BODY, SorAcceleration, SorBody, SorExit, SorParams, SorReport,
     SorRow, SorWorkspace, solve_sor, solve_sor_rows,
 };
+pub use sparse::{NO_SPARSE_BODY, RowBlock, ScaledRow};

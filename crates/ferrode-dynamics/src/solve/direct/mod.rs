@@ -1,0 +1,194 @@
+//! `Direct`: the exact solution of the boxed linear complementarity problem.
+//!
+//! Small islands, where nothing beats it, go to Dantzig's pivoting on the dense matrix ([`dense`]), as in ODE; all others to block pivoting on
+//! a sparse factorisation ([`sparse`]), whose time grows with the mechanism and not with the cube of its rows. Both freeze friction
+//! bounds at the solution without friction, so both have the same answer; the second one starts from what
+//! the rows did in the step before ([`warm`]).
+
+mod arrange;
+mod dense;
+mod sparse;
+mod warm;
+
+pub(crate) use arrange::arrange;
+
+use super::{FreeMotion, Solved, free_motions, right_hand_side};
+use crate::report::{DirectMethod, IslandSolve};
+use crate::rows::{NO_FRICTION_INDEX, Row};
+use crate::step::{Island, SolverBody};
+use ferrode_math::Vec3;
+
+/// How `Direct` solves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectSettings {
+    /// Islands with fewer rows are solved by Dantzig's method on the dense matrix, as in ODE; 30 by default. `usize::MAX` solves all
+    /// islands so.
+    pub dense_rows: usize,
+    /// The most factorisations that block pivoting may take for one problem, 200 by default. Past that an island of up to
+    /// `most_dense_rows` rows goes to Dantzig's method.
+    pub max_factorisations: u32,
+    /// The most rows that the dense method is given as a last resort; 1500 by default.
+    pub most_dense_rows: usize,
+    /// Whether pivoting starts from the states that the rows had in the step before. It saves time and changes no result.
+    pub warm_start: bool,
+}
+
+impl Default for DirectSettings {
+    fn default() -> Self {
+        Self { dense_rows: 30, max_factorisations: 200, most_dense_rows: 1500, warm_start: true }
+    }
+}
+
+/// Memory of the stepper. Dropping it costs time and changes nothing.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Workspace {
+    free: Vec<FreeMotion>,
+    system: RowSystem,
+    spans: SpansByBody,
+    dense: dense::Workspace,
+    sparse: sparse::Workspace,
+}
+
+/// What all methods need of the rows: right-hand side, CFM/h, bounds.
+#[derive(Clone, Debug, Default)]
+struct RowSystem {
+    rhs: Vec<f64>,
+    sigma: Vec<f64>,
+    lo: Vec<f64>,
+    hi: Vec<f64>,
+    findex: Vec<i32>,
+}
+
+/// Which spans act on each body, and on which side: `starts[b]..starts[b + 1]` in `at_body`.
+#[derive(Clone, Debug, Default)]
+struct SpansByBody {
+    starts: Vec<usize>,
+    at_body: Vec<(u32, u32)>,
+}
+
+/// Begins a step.
+pub(crate) fn begin_step(work: &mut Workspace) {
+    work.sparse.warm.begin_step();
+}
+
+/// Ends a step.
+pub(crate) fn end_step(work: &mut Workspace) {
+    work.sparse.warm.end_step();
+}
+
+/// Finds the forces of an island's rows; `number` is the island's in this step.
+pub(crate) fn solve(
+    island: &mut Island,
+    h: f64,
+    settings: &DirectSettings,
+    number: usize,
+    work: &mut Workspace,
+) -> (Solved, IslandSolve) {
+    let m = island.rows.len();
+    island.lambda.clear();
+    island.lambda.resize(m, 0.0);
+    let mut report = IslandSolve { rows: m, ..IslandSolve::default() };
+    if m == 0 {
+        return (Solved::Completely, report);
+    }
+    let fps = 1.0 / h;
+    free_motions(&island.bodies, fps, &mut work.free);
+    work.system.load(island, fps, &work.free);
+    work.spans.list(island);
+    let dense = m < settings.dense_rows;
+    if dense {
+        let solved = dense::solve(island, &work.system, &work.spans, &mut work.dense, &mut report);
+        if solved == Solved::Completely {
+            return (solved, report);
+        }
+        // ODE gives up here, and bodies fall through each other.
+        report.fell_back = true;
+    }
+    let solved = sparse::solve(island, &work.system, settings, number, &mut work.sparse, &mut report);
+    if dense {
+        report.method = DirectMethod::BlockPivoting;
+    }
+    (solved, report)
+}
+
+impl RowSystem {
+    fn load(&mut self, island: &Island, fps: f64, free: &[FreeMotion]) {
+        self.rhs.clear();
+        self.sigma.clear();
+        self.lo.clear();
+        self.hi.clear();
+        self.findex.clear();
+        for span in &island.spans {
+            for row in &island.rows[span.first..span.first + span.count.rows] {
+                self.rhs.push(right_hand_side(row, span, fps, free));
+                self.sigma.push(row.cfm * fps);
+                self.lo.push(row.lo);
+                self.hi.push(row.hi);
+                self.findex.push(match row.friction_index {
+                    NO_FRICTION_INDEX => -1,
+                    local => span.first as i32 + local,
+                });
+            }
+        }
+    }
+}
+
+impl SpansByBody {
+    /// Counting sort of the spans by body; within a body they stay in the order of their rows.
+    fn list(&mut self, island: &Island) {
+        self.starts.clear();
+        self.starts.resize(island.bodies.len() + 2, 0);
+        let n = island.bodies.len();
+        for place in island.spans.iter().flat_map(|span| span.bodies) {
+            if (place as usize) < n {
+                self.starts[place as usize + 2] += 1;
+            }
+        }
+        for i in 2..self.starts.len() {
+            self.starts[i] += self.starts[i - 1];
+        }
+        self.at_body.clear();
+        self.at_body.resize(*self.starts.last().unwrap_or(&0), (0, 0));
+        for (index, span) in island.spans.iter().enumerate() {
+            for (side, place) in span.bodies.into_iter().enumerate() {
+                if (place as usize) < n {
+                    let next = &mut self.starts[place as usize + 1];
+                    self.at_body[*next] = (index as u32, side as u32);
+                    *next += 1;
+                }
+            }
+        }
+    }
+}
+
+fn jacobian(row: &Row, side: u32) -> (Vec3, Vec3) {
+    if side == 0 { (row.linear1, row.angular1) } else { (row.linear2, row.angular2) }
+}
+
+/// Adds the constraint forces Jᵀλ to all other forces of an island's bodies.
+pub(crate) fn sum_forces(island: &mut Island, work: &Workspace) {
+    if island.rows.is_empty() {
+        return;
+    }
+    for body in 0..island.bodies.len() {
+        let (mut force, mut torque) = (Vec3::ZERO, Vec3::ZERO);
+        for (span, side) in &work.spans.at_body[work.spans.starts[body]..work.spans.starts[body + 1]] {
+            let span = &island.spans[*span as usize];
+            let range = span.first..span.first + span.count.rows;
+            for (row, lambda) in island.rows[range.clone()].iter().zip(&island.lambda[range]) {
+                let (l, a) = jacobian(row, *side);
+                force += l * *lambda;
+                torque += a * *lambda;
+            }
+        }
+        let b = &mut island.bodies[body];
+        b.force = force + b.force;
+        b.torque = torque + b.torque;
+    }
+}
+
+/// The velocity after the step of one body.
+pub(crate) fn update_velocity(body: &mut SolverBody, h: f64) {
+    body.frame.linear_velocity += body.force * (h * body.inv_mass);
+    body.frame.angular_velocity += body.inv_inertia * (body.torque * h);
+}

@@ -1,0 +1,191 @@
+//! Block pivoting on the sparse factorisation (`ferrode_lcp::pivoting`): hands it rows scaled by the bodies' masses.
+//!
+//! With M⁻¹ = C Cᵀ per body (C: the root of the inverse mass, and the Cholesky factor of the inverse inertia) a row's Jacobian becomes J C.
+
+use super::warm::{Key, WarmStart};
+use super::{DirectSettings, RowSystem};
+use crate::arena::NIL;
+use crate::report::{DirectMethod, IslandSolve};
+use crate::rows::RowKind;
+use crate::solve::Solved;
+use crate::step::{Island, JointSpan};
+use ferrode_lcp::{
+    NO_SPARSE_BODY, PivotingOptions, PivotingWorkspace, RowBlock, RowState, ScaledRow, SparseLcp,
+    solve_pivoting,
+};
+use ferrode_math::{Mat3, Vec3};
+
+/// Memory of the method.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Workspace {
+    scale: Vec<Scale>,
+    blocks: Vec<RowBlock>,
+    jacobian: Vec<ScaledRow>,
+    states: Vec<[Option<RowState>; 2]>,
+    pivoting: PivotingWorkspace,
+    pub warm: WarmStart,
+}
+
+/// C of a body.
+#[derive(Clone, Copy, Debug)]
+struct Scale {
+    linear: f64,
+    /// Lower triangle, by rows: (0,0), (1,0), (1,1), (2,0), (2,1), (2,2).
+    angular: [f64; 6],
+}
+
+impl Scale {
+    const IMMOVABLE: Self = Self { linear: 0.0, angular: [0.0; 6] };
+
+    fn new(inv_mass: f64, inv_inertia: &Mat3) -> Self {
+        let a = &inv_inertia.rows;
+        // A direction without inverse inertia gives a column of zeros.
+        let root = |x: f64| if x > 0.0 { x.sqrt() } else { 0.0 };
+        let over = |x: f64, d: f64| if d > 0.0 { x / d } else { 0.0 };
+        let l00 = root(a[0][0]);
+        let (l10, l20) = (over(a[1][0], l00), over(a[2][0], l00));
+        let l11 = root(a[1][1] - l10 * l10);
+        let l21 = over(a[2][1] - l20 * l10, l11);
+        let l22 = root((a[2][2] - l20 * l20) - l21 * l21);
+        Self { linear: root(inv_mass), angular: [l00, l10, l11, l20, l21, l22] }
+    }
+
+    /// J C.
+    #[inline(always)]
+    fn apply(&self, linear: Vec3, angular: Vec3) -> [f64; 6] {
+        let l = &self.angular;
+        [
+            linear.x * self.linear,
+            linear.y * self.linear,
+            linear.z * self.linear,
+            (l[0] * angular.x + l[1] * angular.y) + l[3] * angular.z,
+            l[2] * angular.y + l[4] * angular.z,
+            l[5] * angular.z,
+        ]
+    }
+}
+
+/// Finds the forces of an island's rows.
+pub(super) fn solve(
+    island: &mut Island,
+    system: &RowSystem,
+    settings: &DirectSettings,
+    number: usize,
+    work: &mut Workspace,
+    report: &mut IslandSolve,
+) -> Solved {
+    work.load(island);
+    work.guess(island, settings.warm_start);
+    let mut problem = SparseLcp {
+        bodies: island.bodies.len(),
+        blocks: &work.blocks,
+        jacobian: &work.jacobian,
+        sigma: &system.sigma,
+        rhs: &system.rhs,
+        lo: &system.lo,
+        hi: &system.hi,
+        findex: &system.findex,
+        states: &mut work.states,
+        x: &mut island.lambda,
+    };
+    let options = PivotingOptions {
+        max_factorisations: settings.max_factorisations,
+        most_dense_rows: settings.most_dense_rows,
+        topology: number,
+    };
+    report.method = DirectMethod::BlockPivoting;
+    match solve_pivoting(&mut problem, &options, &mut work.pivoting) {
+        Ok(answer) => {
+            report.factorisations = answer.factorisations;
+            report.newton_steps = answer.newton_steps;
+            report.fell_back |= answer.fell_back;
+            report.residual = answer.residual;
+            report.largest_force = answer.largest;
+            report.factor_blocks = answer.factor_blocks;
+            if !island.lambda.iter().all(|x| x.is_finite()) {
+                island.lambda.fill(0.0);
+                return Solved::Partly;
+            }
+            if settings.warm_start {
+                work.remember(island);
+            }
+            if report.certified() { Solved::Completely } else { Solved::Partly }
+        }
+        Err(_) => {
+            // Bounds that exclude zero: no force rather than a wrong one.
+            island.lambda.fill(0.0);
+            report.residual = f64::INFINITY;
+            Solved::Partly
+        }
+    }
+}
+
+impl Workspace {
+    fn load(&mut self, island: &Island) {
+        self.scale.clear();
+        self.scale.extend(island.bodies.iter().map(|b| Scale::new(b.inv_mass, &b.inv_inertia)));
+        self.blocks.clear();
+        self.jacobian.clear();
+        for span in &island.spans {
+            let movable = |place: u32| {
+                let body = island.bodies.get(place as usize);
+                body.is_some_and(|b| b.inv_mass != 0.0 || b.inv_inertia != Mat3::ZERO)
+            };
+            let bodies = span.bodies.map(|place| if movable(place) { place } else { NO_SPARSE_BODY });
+            self.blocks.push(RowBlock { bodies, first: span.first as u32, count: span.count.rows as u32 });
+            let [a, b] = bodies.map(|b| *self.scale.get(b as usize).unwrap_or(&Scale::IMMOVABLE));
+            for row in &island.rows[span.first..span.first + span.count.rows] {
+                self.jacobian.push([a.apply(row.linear1, row.angular1), b.apply(row.linear2, row.angular2)]);
+            }
+        }
+    }
+
+    /// Asks what the rows did in the step before.
+    fn guess(&mut self, island: &Island, warm: bool) {
+        self.states.clear();
+        self.states.resize(island.rows.len(), [None; 2]);
+        if !warm {
+            return;
+        }
+        for span in &island.spans {
+            if let Some((key, point)) = key(island, span)
+                && let Some(states) = self.warm.find(key, point)
+            {
+                for row in span.first..span.first + span.count.rows {
+                    self.states[row] = states[usize::from(island.rows[row].slot) & 7];
+                }
+            }
+        }
+    }
+
+    fn remember(&mut self, island: &Island) {
+        for span in &island.spans {
+            if let Some((key, point)) = key(island, span) {
+                let mut states = [[None; 2]; 8];
+                for row in span.first..span.first + span.count.rows {
+                    states[usize::from(island.rows[row].slot) & 7] = self.states[row];
+                }
+                self.warm.add(key, point, states);
+            }
+        }
+    }
+}
+
+/// What names the rows of a span from step to step: the joint, or for a contact, which programs make anew each step, the bodies and
+/// the point in the first one's frame. None if none of the rows has a bound.
+fn key(island: &Island, span: &JointSpan) -> Option<(Key, Vec3)> {
+    let rows = &island.rows[span.first..span.first + span.count.rows];
+    if rows.iter().all(|row| row.lo == f64::NEG_INFINITY && row.hi == f64::INFINITY) {
+        return None;
+    }
+    let first = rows.first()?;
+    if first.kind == RowKind::Normal {
+        // n × (r × n) is the point relative to the centre of mass, less its part along the normal.
+        let body = island.bodies.get(span.bodies[0] as usize)?;
+        let point = first.linear1.cross(first.angular1);
+        let bodies = span.bodies.map(|b| island.slot(b));
+        Some((Key { bodies, joint: NIL }, body.frame.rotation.transpose_mul(point)))
+    } else {
+        Some((Key { bodies: [NIL; 2], joint: span.joint }, Vec3::ZERO))
+    }
+}
