@@ -65,7 +65,7 @@ fn lines(results: &[(&'static str, Stats)]) -> String {
 /// A table with a column a stepper.
 fn table(args: &CompareArgs, steps: u64, h: f64, results: &[(&'static str, Stats)]) -> String {
     type Cell = fn(&Stats) -> String;
-    let rows: [(&str, Cell); 10] = [
+    let rows: [(&str, Cell); 11] = [
         ("step time, median", |s| seconds(s.step_time_quantile(0.5))),
         ("step time, 99th percentile", |s| seconds(s.step_time_quantile(0.99))),
         ("real-time factor", |s| round(s.real_time_factor())),
@@ -76,6 +76,7 @@ fn table(args: &CompareArgs, steps: u64, h: f64, results: &[(&'static str, Stats
         ("joint error, angle", |s| format!("{} rad", round(s.joint_angle_error.value))),
         ("penetration", |s| metres(s.penetration.value)),
         ("quarantined", |s| s.quarantined.to_string()),
+        ("islands solved in part", |s| s.solver_failures.to_string()),
     ];
     let mut text = format!("{}: {steps} steps of {}\n\n", args.file.file.display(), seconds(h));
     let mut line = |name: &str, cells: Vec<String>| {

@@ -25,7 +25,14 @@ fn close(found: f64, expected: f64, tolerance: f64) {
 /// Gravity pulls 3 m/s² along x and 8 m/s² down.
 #[test]
 fn friction_tags() {
-    let (table, _) = run("friction", "as_is", &[], &["--time", "1"]);
+    for stepper in ["quick", "direct"] {
+        friction_with(stepper);
+    }
+}
+
+fn friction_with(stepper: &str) {
+    let (table, summary) = run("friction", stepper, &[], &["--time", "1", "--stepper", stepper]);
+    assert_eq!(summary["solver_failures"], 0, "{stepper}");
     let v = |model: &str| table.last(&format!("link.{model}::body.vx[m/s]"));
     // Coulomb: a = gx − μ gz, or no motion.
     close(v("default"), 0.0, 1e-6);

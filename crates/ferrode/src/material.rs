@@ -1,6 +1,6 @@
 //! How a geom's surface acts, and how two surfaces act together.
 
-use ferrode_dynamics::{Error, Softness, Surface};
+use ferrode_dynamics::{Error, Softness, Surface, SurfaceMode};
 use ferrode_math::Vec3;
 
 /// The surface of a geom. What two geoms do to each other where they touch comes from both, by [`CombineRules`].
@@ -172,8 +172,15 @@ impl CombineRules {
             surface = surface.with_rolling(rolling, rolling, spinning);
         }
         let slip = [a.slip1 + b.slip1, a.slip2 + b.slip2];
-        if slip != [0.0; 2] {
-            surface = surface.with_slip(slip[0], slip[1]);
+        // Each direction for itself: with a slip of 0 its rows would lose the world's CFM, and those of a box's four corners
+        // could no longer be told apart.
+        if slip[0] != 0.0 {
+            surface.mode |= SurfaceMode::SLIP1;
+            surface.slip1 = slip[0];
+        }
+        if slip[1] != 0.0 {
+            surface.mode |= SurfaceMode::SLIP2;
+            surface.slip2 = slip[1];
         }
         let motion = [a.motion[0] + b.motion[0], a.motion[1] + b.motion[1]];
         if motion != [0.0; 2] {
