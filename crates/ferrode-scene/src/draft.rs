@@ -1,5 +1,5 @@
 //! What the files say before their references are resolved: poses still relative to named frames, joints still
-//! naming what they join. Both readers produce this; [`crate::frames`] makes a [`crate::description::Scene`] of it.
+//! naming what they join. Both readers produce this; [`crate::resolve`] makes a [`crate::description::Scene`] of it.
 
 use ferrode_math::{Pose, Vec3};
 

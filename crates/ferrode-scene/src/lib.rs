@@ -31,7 +31,7 @@
 //!
 //! A file goes through these steps: [`source`] keeps its text and turns offsets into lines; `xml` reads elements
 //! and values with their places; `sdf` and `urdf` make a `draft` of it, in which frames and links are still names;
-//! `frames` resolves the names and poses; `merge` joins what fixed joints of a URDF hold together.
+//! `frames` finds the poses and `resolve` what the names mean; `merge` joins what fixed joints of a URDF hold together.
 
 pub mod build;
 mod context;
@@ -43,6 +43,7 @@ mod heightmap;
 mod inertia;
 mod merge;
 mod mesh;
+mod resolve;
 mod sdf;
 pub mod source;
 mod urdf;
@@ -141,7 +142,7 @@ fn read(source: &Source, cx: &mut Context<'_>) -> Result<Scene> {
         "gazebo" => Err(root.error("this is SDF 1.2 or older: 1.4 to 1.12 are read")),
         other => Err(root.error(format!("this is neither SDF nor URDF: its root element is <{other}>"))),
     })?;
-    frames::resolve(draft, &mut cx.notes)
+    resolve::resolve(draft, &mut cx.notes)
 }
 
 fn finish(scene: Scene, cx: Context<'_>) -> Result<Loaded> {

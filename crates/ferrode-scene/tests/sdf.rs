@@ -504,3 +504,68 @@ fn an_open_mesh_has_no_automatic_inertia() {
     assert!(error.message().contains("no collision gives it a volume"), "{error}");
     assert_eq!(error.line(), Some(2));
 }
+
+/// Pseudo-random numbers by linear congruence: the same trees in every run.
+struct Dice(u32);
+
+impl Dice {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (self.0 >> 8) as usize % n
+    }
+
+    fn number(&mut self) -> f64 {
+        self.below(2001) as f64 / 1000.0 - 1.0
+    }
+}
+
+/// Links, frames and joints that are relative to one another in any order, also through nested models: each pose is the
+/// product along its chain.
+#[test]
+fn poses_are_products_along_their_chains() {
+    let mut dice = Dice(7);
+    for _ in 0..50 {
+        let mut items: Vec<String> = Vec::new();
+        // Name as the outer model sees it, and pose in the outer model's frame.
+        let mut known: Vec<(String, Pose)> = vec![("__model__".to_owned(), Pose::IDENTITY)];
+        for index in 0..12 {
+            let (base, base_pose) = known[dice.below(known.len())].clone();
+            let [x, y, z, roll, pitch, yaw] = [(); 6].map(|()| dice.number());
+            let turn = |axis, angle| Quat::from_axis_angle(axis, angle);
+            let rotation = turn(Vec3::Z, yaw) * turn(Vec3::Y, pitch) * turn(Vec3::X, roll);
+            let own = base_pose * Pose::new(Vec3::new(x, y, z), rotation);
+            let pose = format!("<pose relative_to='{base}'>{x} {y} {z} {roll} {pitch} {yaw}</pose>");
+            match dice.below(3) {
+                0 => items.push(format!("<link name='n{index}'>{pose}</link>")),
+                1 => items.push(format!("<frame name='n{index}'>{pose}</frame>")),
+                _ => {
+                    // A model placed by a link in it, which stands off the model's own frame.
+                    items.push(format!(
+                        "<model name='n{index}' placement_frame='in'>{pose}<link name='in'><pose>{y} {z} {x} 0 0 {roll}</pose></link></model>"
+                    ));
+                    let inner = Pose::new(Vec3::new(y, z, x), turn(Vec3::Z, roll));
+                    known.push((format!("n{index}::in"), own));
+                    known.push((format!("n{index}"), own * inner.inverse()));
+                    continue;
+                }
+            }
+            known.push((format!("n{index}"), own));
+        }
+        // The order of the file does not matter.
+        for index in (1..items.len()).rev() {
+            items.swap(index, dice.below(index + 1));
+        }
+        let scene = model("1.9", &format!("<link name='base'/>{}", items.concat())).scene;
+        for (name, pose) in known.iter().skip(1) {
+            let full = format!("m::{name}");
+            let found = scene
+                .link(&full)
+                .map(|link| link.pose)
+                .or_else(|| scene.frame(&full).map(|frame| frame.pose))
+                .or_else(|| scene.model(&full).map(|model| model.pose))
+                .unwrap_or_else(|| panic!("{full}"));
+            assert!((found.position - pose.position).length() < 1e-12, "{full}");
+            assert!((found.rotation.dot(pose.rotation).abs() - 1.0).abs() < 1e-12, "{full}");
+        }
+    }
+}
