@@ -140,6 +140,8 @@ pub fn mass_of(shape: &Shape, density: f64) -> Result<Mass, Error> {
         Shape::Cuboid(s) => Mass::cuboid(density, s.sides())?,
         Shape::Capsule(s) => Mass::capsule(density, Axis::Z, s.radius(), s.length())?,
         Shape::Cylinder(s) => Mass::cylinder(density, Axis::Z, s.radius(), s.length())?,
+        Shape::Ellipsoid(s) => Mass::ellipsoid(density, s.radii())?,
+        Shape::Cone(s) => Mass::cone(density, Axis::Z, s.radius(), s.length())?,
         Shape::Convex(s) => {
             let fan = |face: &[u32]| -> Vec<[u32; 3]> {
                 face[1..].windows(2).map(|edge| [face[0], edge[0], edge[1]]).collect()

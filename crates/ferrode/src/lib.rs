@@ -12,6 +12,7 @@ mod fixed_step;
 mod geoms;
 mod joints;
 mod material;
+mod query;
 mod step;
 mod world;
 
@@ -28,14 +29,15 @@ pub use energy::Energy;
 pub use error::Error;
 pub use events::ContactEvent;
 pub use ferrode_collide::{
-    Capsule, CollideOptions, Colliders, Convex, Cuboid, Cylinder, Geom, GeomContact, GeomKey, Plane, Ray,
-    Shape, SpaceKey, SpaceKind, Sphere, TriMesh,
+    Capsule, CollideOptions, Colliders, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Geom, GeomContact,
+    GeomKey, Plane, Ray, RayHit, Shape, SpaceKey, SpaceKind, Sphere, TriMesh,
 };
 pub use ferrode_dynamics::{
     AMotor, AMotorMode, AutoDisable, AxisFrame, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping,
-    FiniteRotation, Fixed, GroupKey, Hinge, Hinge2, JointError, JointFeedback, JointKey, JointType, LMotor,
-    LimitMotor, LimitState, Mass, Null, PR, PU, Param, Piston, Plane2D, QuickSettings, Slider, Softness,
-    StepReport, Stepper, Surface, SurfaceMode, Transmission, TransmissionMode, Universal,
+    DirectMethod, DirectSettings, FiniteRotation, Fixed, GroupKey, Hinge, Hinge2, IslandSolve, JointError,
+    JointFeedback, JointKey, JointType, LMotor, LimitMotor, LimitState, Mass, Null, PR, PU, Param, Piston,
+    Plane2D, QuickSettings, Slider, Softness, StepReport, Stepper, Surface, SurfaceMode, Transmission,
+    TransmissionMode, Universal,
 };
 pub use ferrode_math::{Aabb, ContactPoint, Mat3, Pose, Quat, Vec3};
 pub use fixed_step::FixedStep;

@@ -67,9 +67,11 @@ fn called(
     let _ = c.parent(key);
     let _ = c.set_parent(key, None);
     let _ = Convex::from_faces(&[], &[[0, 1, 2]]);
+    let _ = world.ray_cast(Vec3::ZERO, Vec3::Z, 1.0, |_| true);
+    let _ = c.ray_cast(s, Vec3::ZERO, Vec3::Z, 1.0, |_, _| true);
 }
 
-const CALLED: [&str; 11] = [
+const CALLED: [&str; 13] = [
     "World::add_geom",
     "World::add_static",
     "World::create_joint",
@@ -81,6 +83,8 @@ const CALLED: [&str; 11] = [
     "Colliders::parent",
     "Colliders::set_parent",
     "Convex::from_faces",
+    "World::ray_cast",
+    "Colliders::ray_cast",
 ];
 
 #[test]
@@ -104,8 +108,8 @@ fn every_method_that_the_table_names_exists() {
     exist!(known, "Capsule", Capsule: new);
     exist!(
         known, "Colliders", Colliders:
-        add_geom, add_space, cleanup, member_count, members, remove_geom, remove_space, set_bits,
-        set_body, set_cleanup, set_hash_levels, set_offset, set_pose, set_sublevel, sublevel
+        add_geom, add_space, cleanup, member_count, members, point_depth, remove_geom, remove_space,
+        set_bits, set_body, set_cleanup, set_hash_levels, set_offset, set_pose, set_sublevel, sublevel
     );
     exist!(known, "Convex", Convex: from_points);
     exist!(known, "Cuboid", Cuboid: new);
@@ -224,7 +228,7 @@ fn every_method_that_the_table_names_exists() {
         known, "Quat", Quat:
         IDENTITY, conjugate, derivative, from_axis_angle, from_matrix, to_matrix
     );
-    exist!(known, "Ray", Ray: new);
+    exist!(known, "Ray", Ray: new, pose);
     let quadtree = SpaceKind::Quadtree { center: [0.0; 2], half_sides: [1.0; 2], depth: 1 };
     let _ = (SpaceKind::Simple, SpaceKind::HASH, quadtree, SpaceKind::SweepAndPrune);
     known.extend(["Simple", "HASH", "Quadtree", "SweepAndPrune"].map(|kind| format!("SpaceKind::{kind}")));
