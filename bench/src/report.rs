@@ -99,7 +99,7 @@ pub fn write(folder: &str, lines: &[Line]) -> std::io::Result<String> {
         );
     }
     let mut md = format!(
-        "# {stem}\n\nMilliseconds per step, medians of {} runs in alternation, one thread each. Contacts come from one recorded \
+        "# {stem}\n\nMilliseconds of processor time per step, medians of {} runs in alternation, one thread each. Contacts come from one recorded \
          list for both engines. Joint error, penetration and largest speed are those at the end of the run.\n\n\
          | scene | stepper | bodies | rows | ferrode | libode | ratio | joint error m (ferrode / libode) | penetration m | speed m/s | \
          positions apart m |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
