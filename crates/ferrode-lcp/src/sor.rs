@@ -330,8 +330,10 @@ impl SorWorkspace {
         self.lambda.push(1.0);
         self.acceleration.clear();
         self.acceleration.resize(bodies.len() + 1, SorAcceleration::default());
-        self.packed.clear();
-        self.packed.reserve(m);
+        // Rows of an earlier solve may stand behind the m of this one; every row is written whole.
+        if self.packed.len() < m {
+            self.packed.resize(m, PackedRow::default());
+        }
         self.order.clear();
         self.friction.clear();
         self.weight.clear();
@@ -340,8 +342,10 @@ impl SorWorkspace {
             self.weight.reserve(m);
             self.change.resize(bodies.len() + 1, [0.0; 2]);
         }
-        for (row, r) in rows.take(m).enumerate() {
+        let mut count = 0;
+        for (row, (r, packed)) in rows.zip(&mut self.packed[..m]).enumerate() {
             let r = r.borrow();
+            count += 1;
             check_row(row, r, m, bodies.len())?;
             // The loop reads the first body always and the second if there is one.
             let swapped;
@@ -351,8 +355,9 @@ impl SorWorkspace {
             } else {
                 r
             };
-            let (mut j0, b0) = part(bodies, r.body[0], &r.j[..6]);
-            let (mut j1, b1) = part(bodies, r.body[1], &r.j[6..]);
+            (packed.j0, packed.b0) = part(bodies, r.body[0], &r.j[..6]);
+            (packed.j1, packed.b1) = part(bodies, r.body[1], &r.j[6..]);
+            let PackedRow { j0, b0, j1, b1, .. } = packed;
             let mut s = [0.0; 4];
             for l in 0..6 {
                 s[l % 2] += j0[l] * b0[l];
@@ -373,23 +378,15 @@ impl SorWorkspace {
                 self.order.push(row as u32);
                 (r.lo, r.hi, m as u32)
             };
-            self.packed.push(PackedRow {
-                rhs: r.rhs * d,
-                cfm: r.cfm * d,
-                lo,
-                hi,
-                body: [r.body[0].min(nobody), r.body[1]],
-                scale,
-                j0,
-                b0,
-                j1,
-                b1,
-            });
+            packed.rhs = r.rhs * d;
+            packed.cfm = r.cfm * d;
+            (packed.lo, packed.hi, packed.scale) = (lo, hi, scale);
+            packed.body = [r.body[0].min(nobody), r.body[1]];
             if params.dynamic.is_some() {
-                self.weight.push([largest(&b0), largest(&b1)]);
+                self.weight.push([largest(&packed.b0), largest(&packed.b1)]);
             }
         }
-        check_len("rows", self.packed.len(), m)?;
+        check_len("rows", count, m)?;
         self.order.extend_from_slice(&self.friction);
         find_stretches(&self.order, &self.packed, &mut self.stretches);
         Ok(())

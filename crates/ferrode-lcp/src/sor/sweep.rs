@@ -14,7 +14,7 @@
 use super::{NO_BODY, SorAcceleration};
 
 /// A row as the loop reads it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub(super) struct PackedRow {
     pub rhs: f64,
@@ -32,8 +32,8 @@ pub(super) struct PackedRow {
     pub b1: [f64; 6],
 }
 
-/// The longest stretch of rows that is visited as one.
-const LONGEST: usize = 4;
+/// The longest stretch of rows that is visited as one: more rows need more registers than there are.
+const LONGEST: usize = 3;
 
 /// Some rows on the same bodies that follow each other in the order.
 #[derive(Clone, Copy, Debug)]
@@ -42,8 +42,8 @@ pub(super) struct Stretch {
     start: u32,
     /// How many they are, up to [`LONGEST`].
     len: u32,
-    /// `-d_k J_k B_l` for l < k: (1,0), (2,0), (2,1), (3,0), …
-    coupling: [f64; 6],
+    /// `-d_k J_k B_l` for l < k: (1,0), (2,0), (2,1).
+    coupling: [f64; 3],
 }
 
 /// Cuts an order into stretches.
@@ -53,7 +53,7 @@ pub(super) fn find_stretches(order: &[u32], packed: &[PackedRow], stretches: &mu
     while let Some(first) = order.get(at).map(|&row| &packed[row as usize]) {
         let same = |row: &&u32| packed[**row as usize].body == first.body;
         let len = order[at..].iter().take(LONGEST).take_while(same).count();
-        let mut coupling = [0.0; 6];
+        let mut coupling = [0.0; 3];
         let mut c = 0;
         for k in 1..len {
             let row = &packed[order[at + k] as usize];
@@ -175,14 +175,13 @@ impl<const ZERO: bool, const DYNAMIC: bool> Sweep<'_, ZERO, DYNAMIC> {
         match (stretch.len, rows) {
             (2, &[a, b, ..]) => self.visit_together([a, b], &stretch.coupling),
             (3, &[a, b, c, ..]) => self.visit_together([a, b, c], &stretch.coupling),
-            (4, &[a, b, c, d, ..]) => self.visit_together([a, b, c, d], &stretch.coupling),
             (_, &[a, ..]) => self.visit(a as usize),
             _ => {}
         }
     }
 
     #[inline(always)]
-    fn visit_together<const K: usize>(&mut self, rows: [u32; K], coupling: &[f64; 6]) {
+    fn visit_together<const K: usize>(&mut self, rows: [u32; K], coupling: &[f64; 3]) {
         let packed = self.packed;
         let r = rows.map(|row| &packed[row as usize]);
         let (first, second) = (r[0].body[0] as usize, r[0].body[1] as usize);
