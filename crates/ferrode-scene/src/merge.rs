@@ -37,6 +37,14 @@ pub(crate) fn merge_fixed(scene: &mut Scene, joints: &[JointId], notes: &mut Not
     }
     let mut drop_link: Vec<bool> = keepers.iter().enumerate().map(|(link, &kept)| link != kept).collect();
     drop_massless(scene, &keepers, &mut drop_link, &mut drop_joint, notes)?;
+    for joint in &scene.joints {
+        let leaders = [&joint.axis, &joint.axis2].into_iter().flatten().filter_map(|axis| axis.mimic);
+        for mimic in leaders.filter(|mimic| drop_joint[mimic.leader.0]) {
+            let leader = &scene.joints[mimic.leader.0].name;
+            let message = format!("joint `{}` mimics nothing: `{leader}` cannot move", joint.name);
+            notes.suspicious(joint.origin.clone(), message);
+        }
+    }
     if drop_link.contains(&true) || drop_joint.contains(&true) {
         renumber(scene, &keepers, &drop_link, &drop_joint);
     }

@@ -2,8 +2,8 @@
 
 use ferrode::math::real;
 use ferrode::{Slider, Vec3};
-use ferrode_scene::description::{JointId, LinkId};
-use ferrode_scene::{BuildOptions, LoadOptions, NamedWorld, build, load_str};
+use ferrode_scene::description::{Body, JointId, LinkId, ModelId};
+use ferrode_scene::{BuildOptions, LoadOptions, NamedWorld, Scene, build, load_str};
 
 fn options() -> LoadOptions {
     LoadOptions { use_environment: false, ..LoadOptions::default() }
@@ -684,4 +684,32 @@ fn terrain_carries_what_falls_on_it() {
     }
     assert!((lowest - 0.3).abs() < 0.02, "{lowest}");
     assert!(!world.world.contacts().is_empty());
+}
+
+#[test]
+fn scenes_that_do_not_hang_together_are_refused() {
+    let text = "<sdf version='1.11'><model name='m'><link name='l'/><link name='k'/>
+        <joint name='j' type='revolute'><parent>l</parent><child>k</child><axis><mimic joint='i'/></axis></joint>
+        <joint name='i' type='revolute'><parent>world</parent><child>l</child><axis/></joint></model></sdf>";
+    let scene = load_str("test.sdf", text, &options()).unwrap().scene;
+    let refused = |change: fn(&mut Scene)| {
+        let mut scene = scene.clone();
+        change(&mut scene);
+        build(&scene, &BuildOptions::default()).map(drop).expect_err("a broken scene").message().to_owned()
+    };
+    assert_eq!(
+        refused(|scene| scene.joints[0].child = Body::Link(LinkId(9))),
+        "joint `m::j` holds link 9 of 2"
+    );
+    assert_eq!(
+        refused(|scene| scene.joints[0].child = scene.joints[0].parent),
+        "joint `m::j` joins a body to itself"
+    );
+    assert_eq!(refused(|scene| scene.links[1].model = ModelId(3)), "link `m::k` belongs to model 3 of 1");
+    assert!(refused(|scene| scene.models[0].parent = Some(ModelId(0))).contains("does not stand before it"));
+    assert!(refused(|scene| drop(scene.joints.pop())).contains("mimics joint 1 of 1"));
+    assert!(refused(|scene| scene.physics.max_step_size = f64::NAN).contains("step size"));
+    assert!(refused(|scene| scene.gravity.x = f64::NAN).contains("physics settings"));
+    assert!(refused(|scene| scene.links[0].inertial.mass = -1.0).contains("refuses the link"));
+    assert!(refused(|scene| scene.links[0].pose.position.x = f64::INFINITY).contains("refuses the link"));
 }

@@ -190,3 +190,23 @@ fn a_planar_joint_keeps_its_link_in_the_plane() {
     let fallen = 0.5 * 9.8 * ferrode::math::real::sin(0.5);
     assert!((moved.length() - fallen).abs() < 0.15 * fallen, "{} {fallen}", moved.length());
 }
+
+#[test]
+fn mimicking_what_cannot_move_is_a_warning() {
+    let extra =
+        "<link name='c'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link>
+      <joint name='j' type='continuous'><parent link='b'/><child link='c'/><mimic joint='b'/></joint>";
+    let loaded = pair("fixed", extra);
+    assert!(loaded.scene.joint("j").unwrap().axis.as_ref().unwrap().mimic.is_none());
+    assert!(loaded.warnings[0].message().contains("`r::j` mimics nothing"), "{}", loaded.warnings[0]);
+}
+
+#[test]
+fn a_robot_can_be_lifted_before_it_is_built() {
+    let mut scene = pair("continuous", "").scene;
+    let before = (scene.links[1].pose.position, scene.joints[0].pose.position);
+    scene.translate_moving(Vec3::new(0.0, 0.0, 2.5));
+    assert!(close(scene.links[1].pose.position - before.0, [0.0, 0.0, 2.5]));
+    assert!(close(scene.joints[0].pose.position - before.1, [0.0, 0.0, 2.5]));
+    assert!(close(scene.models[0].pose.position, [0.0, 0.0, 2.5]));
+}

@@ -47,6 +47,7 @@
 //! constraints bring.
 
 mod bodies;
+mod check;
 mod connect;
 mod coupling;
 mod named;
@@ -98,11 +99,17 @@ const LEAST_CFM: f64 = 1e-10;
 /// Builds a world.
 ///
 /// # Errors
-/// A [`SceneError`] that names the element whose numbers the engine refuses. With [`BuildOptions::strict`], also
+/// A [`SceneError`] that names the element whose numbers the engine refuses, or that names by its place what is not in
+/// the scene; or a step size that is not positive. With [`BuildOptions::strict`], also
 /// whatever would be a warning.
 pub fn build(scene: &Scene, options: &BuildOptions) -> Result<NamedWorld> {
     let mut notes = Notes::default();
+    check::check(scene)?;
     let step_size = options.step.unwrap_or(scene.physics.max_step_size);
+    if !(step_size > 0.0 && step_size.is_finite()) {
+        let file = scene.models.first().map_or("", |model| model.origin.source().name());
+        return Err(SceneError::in_file(file, format!("the step size must be positive, found {step_size}")));
+    }
     let mut world = World::new();
     set_up(&mut world, scene, options, &mut notes).map_err(|error| refused_settings(scene, &error))?;
     let links = bodies::add_links(&mut world, scene, step_size, &mut notes)?;

@@ -121,15 +121,16 @@ impl Scene {
         for (model, _) in self.models.iter_mut().zip(&moves).filter(|(_, moves)| **moves) {
             model.pose.position += by;
         }
-        for link in self.links.iter_mut().filter(|link| moves[link.model.0]) {
+        let moves = |model: ModelId| moves.get(model.0).copied().unwrap_or(false);
+        for link in self.links.iter_mut().filter(|link| moves(link.model)) {
             link.pose.position += by;
         }
-        for joint in self.joints.iter_mut().filter(|joint| joint.model.is_none_or(|model| moves[model.0])) {
+        for joint in self.joints.iter_mut().filter(|joint| joint.model.is_none_or(moves)) {
             joint.pose.position += by;
         }
         for frame in &mut self.frames {
             if let Body::Link(LinkId(link)) = frame.attached_to
-                && moves[self.links[link].model.0]
+                && self.links.get(link).is_some_and(|link| moves(link.model))
             {
                 frame.pose.position += by;
             }
