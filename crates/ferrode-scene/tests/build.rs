@@ -713,3 +713,33 @@ fn scenes_that_do_not_hang_together_are_refused() {
     assert!(refused(|scene| scene.links[0].inertial.mass = -1.0).contains("refuses the link"));
     assert!(refused(|scene| scene.links[0].pose.position.x = f64::INFINITY).contains("refuses the link"));
 }
+
+#[test]
+fn joints_with_two_axes_stop_on_each() {
+    let limit = |low: f64, high: f64| format!("<limit><lower>{low}</lower><upper>{high}</upper></limit>");
+    for kind in ["universal", "revolute2"] {
+        for (parent, child) in [("a", "b"), ("b", "a")] {
+            for axis in 0..2 {
+                let mut world = model(&format!(
+                    "<link name='a'><gravity>0</gravity></link><link name='b'><gravity>0</gravity></link>
+                     <joint name='j' type='{kind}'><parent>{parent}</parent><child>{child}</child>
+                     <axis><xyz>0 0 1</xyz>{}<dynamics><damping>1</damping></dynamics></axis>
+                     <axis2><xyz>1 0 0</xyz>{}<dynamics><damping>1</damping></dynamics></axis2></joint>
+                     <joint name='foot' type='fixed'><parent>world</parent><child>a</child></joint>",
+                    limit(-0.3, 0.4),
+                    limit(-0.5, 0.6)
+                ));
+                assert!(world.warnings.is_empty(), "{:?}", world.warnings);
+                for (effort, ends) in [(2.0, [0.4, 0.6]), (-2.0, [-0.3, -0.5])] {
+                    for _ in 0..300 {
+                        world.add_effort(JointId(0), axis, effort).unwrap();
+                        world.step().unwrap();
+                    }
+                    let found = world.joint("j").unwrap().position(axis).unwrap();
+                    let what = format!("{kind} of {parent} and {child}, axis {axis}");
+                    assert!((found - ends[axis]).abs() < 1e-3, "{what}: {found} is not {}", ends[axis]);
+                }
+            }
+        }
+    }
+}

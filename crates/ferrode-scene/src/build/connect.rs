@@ -101,7 +101,7 @@ fn add_joint(
     let Some(form) = form_of(joint, parent, child, notes) else { return Ok(None) };
     let built = connect(world, joint, form, parent, child)
         .map_err(|error| refused(&joint.origin, &format!("joint `{}`", joint.name), error))?;
-    set_limits(world, joint, &built, step, notes)
+    set_limits(world, joint, &built, step)
         .and_then(|()| set_motor(world, joint, &built))
         .and_then(|()| Ok(world.set_joint_feedback(built.key, joint.advanced.provide_feedback)?))
         .map_err(|error| refused(&joint.origin, &format!("joint `{}`", joint.name), error))?;
@@ -213,7 +213,6 @@ fn set_limits(
     joint: &Joint,
     built: &BuiltJoint,
     step: f64,
-    notes: &mut Notes,
 ) -> std::result::Result<(), Error> {
     for (index, axis) in [&joint.axis, &joint.axis2].into_iter().enumerate() {
         let Some(axis) = axis else { continue };
@@ -223,13 +222,8 @@ fn set_limits(
         if !stops {
             continue;
         }
-        if built.form == Form::Hinge2 && index == 1 {
-            let message = format!("joint `{}`: the limits of <axis2> have no effect, as in ODE", joint.name);
-            notes.not_supported(joint.origin.clone(), message);
-            continue;
-        }
         // Stops that an angle within half a turn does not reach are an angular motor's: see `passive`.
-        if built.has_wide_stops(limits) {
+        if built.has_wide_stops(index, limits) {
             continue;
         }
         let softness = stop_softness(joint, limits, step);
@@ -354,11 +348,11 @@ impl BuiltJoint {
         })
     }
 
-    /// Whether an axis has stops beyond half a turn, which the joint's own angle does not reach. A screw turns too often
-    /// for any other.
-    pub(super) fn has_wide_stops(&self, limits: &Limits) -> bool {
-        let wide =
-            |end: f64| end.is_finite() && (end.abs() > std::f64::consts::PI || self.form == Form::Screw);
+    /// Whether an axis has stops that the joint itself does not keep: beyond half a turn, which its angle does not
+    /// reach; any of a screw, which turns too often; any of a hinge-2's second axis, which ODE's joint ignores.
+    pub(super) fn has_wide_stops(&self, axis: usize, limits: &Limits) -> bool {
+        let never = self.form == Form::Screw || (self.form, axis) == (Form::Hinge2, 1);
+        let wide = |end: f64| end.is_finite() && (end.abs() > std::f64::consts::PI || never);
         self.is_angular() && (wide(limits.lower) || wide(limits.upper))
     }
 

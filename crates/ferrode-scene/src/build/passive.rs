@@ -45,7 +45,7 @@ pub(super) fn add(built: &mut NamedWorld, notes: &mut Notes) -> Result<()> {
             let driven = described.advanced.max_force.is_some_and(|force| force > 0.0);
             let (id, name) = (JointId(index), &described.name);
             let refused = |error: Error| refused(&described.origin, &format!("joint `{name}`"), error);
-            let wide = joint.has_wide_stops(&axis.limits);
+            let wide = joint.has_wide_stops(axis_index, &axis.limits);
             let acts = axis.damping > 0.0 || axis.friction > 0.0 || axis.spring.is_some() || wide;
             if !acts {
                 continue;
@@ -90,7 +90,7 @@ fn add_rows(
     if connected.is_angular() {
         let key = add_angular_motor(built, &connected, axis, &passive)?;
         passive.row = RowPlace::Beside(key);
-        if connected.has_wide_stops(&described.limits) {
+        if connected.has_wide_stops(axis, &described.limits) {
             passive.stops = Some(add_wide_stops(built, joint, key, described)?);
         }
     }
