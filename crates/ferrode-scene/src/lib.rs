@@ -156,3 +156,8 @@ fn finish(scene: Scene, cx: Context<'_>) -> Result<Loaded> {
     }
     Ok(Loaded { scene, warnings })
 }
+
+/// The README's code, compiled with the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
