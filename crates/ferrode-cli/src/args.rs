@@ -32,8 +32,8 @@ pub struct FileArgs {
 pub struct SetupArgs {
     /// Adds a plane z = 0.
     pub ground: bool,
-    /// Lifts everything that can move, m.
-    pub height: f64,
+    /// Lifts everything that can move, m; `None`: on the ground plane, if that is asked for.
+    pub height: Option<f64>,
     /// Links to fix to the world.
     pub fix: Vec<String>,
     /// Stiffness and damping that hold joints where they start.
@@ -107,11 +107,14 @@ pub fn stepper_name(stepper: Stepper) -> &'static str {
 
 const DEFAULT_SECONDS: f64 = 5.0;
 
+/// Gains of `--hold` without a value: a robot of some tens of kilograms stands up straight with them.
+const DEFAULT_GAINS: &str = "1000,30";
+
 const EXAMPLES: &str = "\
 Examples:
   ferrode run worlds/workshop.sdf                         five seconds, then a summary
   ferrode run arm.urdf --fix base --hold 200,10           a robot that holds its pose
-  ferrode run anymal.urdf --ground --height 0.6 --hold 300,10 --time 10
+  ferrode run anymal.urdf --ground --hold 300,10 --time 10  a robot that stands
   ferrode run world.sdf --record out.csv --every 10       places and velocities, each tenth step
   ferrode run world.sdf --json | jq .real_time_factor
   ferrode check world.sdf                                 is the file right, and what is in it?
@@ -216,7 +219,10 @@ fn setup_args(command: Command) -> Command {
                 .value_name("Z")
                 .value_parser(number)
                 .allow_negative_numbers(true)
-                .help("Lift everything that can move by Z metres before the start"),
+                .help(
+                    "Lift everything that can move by Z metres before the start [default: 0;\n\
+                     with --ground, as far as it takes for nothing to start below the ground]",
+                ),
         )
         .arg(
             Arg::new("fix")
@@ -230,11 +236,13 @@ fn setup_args(command: Command) -> Command {
                 .long("hold")
                 .value_name("KP,KD")
                 .value_parser(gains)
-                .allow_hyphen_values(true)
+                .num_args(0..=1)
+                .default_missing_value(DEFAULT_GAINS)
+                .allow_hyphen_values(false)
                 .help(
                     "Hold each joint where it starts by its motor, like a spring of\n\
                      KP N·m/rad (N/m) and a damper of KD N·m·s/rad (N·s/m), with no\n\
-                     more force than the file allows (effort)",
+                     more force than the file allows (effort); without gains, 1000,30",
                 ),
         )
 }
@@ -345,7 +353,7 @@ fn file_of(m: &ArgMatches) -> FileArgs {
 fn setup_of(m: &ArgMatches) -> SetupArgs {
     SetupArgs {
         ground: m.get_flag("ground"),
-        height: m.get_one("height").copied().unwrap_or(0.0),
+        height: m.get_one("height").copied(),
         fix: m.get_many::<String>("fix").unwrap_or_default().cloned().collect(),
         hold: m.get_one("hold").copied(),
         dt: m.get_one("dt").copied(),
@@ -376,7 +384,7 @@ mod tests {
         let Task::Run(run) = parse(line.split_whitespace()).unwrap() else { panic!("another task") };
         assert_eq!(run.length, Length::Steps(7));
         assert_eq!(run.stepper, Some(Stepper::Direct));
-        assert_eq!((run.setup.dt, run.setup.height, run.setup.ground), (Some(0.002), -0.5, true));
+        assert_eq!((run.setup.dt, run.setup.height, run.setup.ground), (Some(0.002), Some(-0.5), true));
         assert_eq!((run.setup.fix.len(), run.setup.hold), (2, Some([20.0, 0.5])));
         assert_eq!((run.every, run.json, run.quiet, run.file.strict), (3, true, true, true));
         assert_eq!(run.record.unwrap().to_str(), Some("o.csv"));

@@ -16,6 +16,13 @@ pub struct Simulation {
     pub warnings: Vec<Warning>,
 }
 
+/// Height of the lowest point of all geoms on bodies; infinite if there are none.
+fn lowest_point(world: &World) -> f64 {
+    let on_bodies = world.geoms().filter(|info| info.body.is_some());
+    let boxes = on_bodies.filter_map(|info| world.geom(info.key).ok()).map(|geom| geom.aabb());
+    boxes.map(|aabb| aabb.min.z).fold(f64::INFINITY, f64::min)
+}
+
 /// How the command line wants files to be read.
 pub fn load_options(args: &FileArgs) -> LoadOptions {
     LoadOptions { model_paths: args.model_path.clone(), strict: args.strict, ..LoadOptions::default() }
@@ -28,9 +35,16 @@ impl Simulation {
     /// The file is wrong, cannot be simulated, or lacks a link that is to be fixed.
     pub fn new(file: &FileArgs, setup: &SetupArgs) -> Result<Self, Failure> {
         let mut loaded = load(&file.file, &load_options(file)).map_err(Failure::told)?;
-        loaded.scene.translate_moving(Vec3::new(0.0, 0.0, setup.height));
         let options = BuildOptions { step: setup.dt, strict: file.strict, ..BuildOptions::default() };
-        let named = build(&loaded.scene, &options).map_err(Failure::told)?;
+        loaded.scene.translate_moving(Vec3::new(0.0, 0.0, setup.height.unwrap_or(0.0)));
+        let mut named = build(&loaded.scene, &options).map_err(Failure::told)?;
+        if setup.ground && setup.height.is_none() {
+            let lift = -lowest_point(&named.world).min(0.0);
+            if lift > 0.0 {
+                loaded.scene.translate_moving(Vec3::new(0.0, 0.0, lift));
+                named = build(&loaded.scene, &options).map_err(Failure::told)?;
+            }
+        }
         let warnings = loaded.warnings.into_iter().chain(named.warnings.iter().cloned()).collect();
         let mut simulation = Self { named, hold: None, warnings };
         if setup.ground {

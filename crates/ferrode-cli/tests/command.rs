@@ -253,6 +253,13 @@ fn fix_ground_and_height_change_the_world() {
     assert!((ground.1 - 0.5).abs() < 1e-3, "stands: {ground:?}");
     let high = z("high.csv", &["--time", "2", "--ground", "--height", "0.7"]);
     assert!((high.0 - 1.2).abs() < 1e-12 && (high.1 - 0.5).abs() < 1e-3, "falls and stands: {high:?}");
+    let sunk = edited("box.sdf", "sunk.sdf", "0 0 0.5 0 0 0", "0 0 -3 0 0 0");
+    let table = recorded_of(&sunk, "lifted.csv", &["--time", "1", "--ground"]);
+    let column = table.column("link.box::body.z[m]");
+    assert!(
+        column.iter().all(|z| (z - 0.5).abs() < 1e-3),
+        "is put on the ground it would start below: {column:?}"
+    );
     let fixed = z("fixed.csv", &["--time", "1", "--fix", "body", "--height", "0.7"]);
     assert!((fixed.0 - 1.2).abs() < 1e-12 && (fixed.1 - 1.2).abs() < 1e-4, "hangs: {fixed:?}");
 }

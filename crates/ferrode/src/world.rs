@@ -37,6 +37,8 @@ pub struct World {
     /// Slots of geoms that touched in the last step, in ascending order.
     pub(crate) touching: Vec<(usize, usize)>,
     pub(crate) time: f64,
+    /// What rounding has kept out of `time` so far.
+    pub(crate) time_rest: f64,
     pub(crate) steps: u64,
     pub(crate) scratch: Scratch,
 }
@@ -107,6 +109,7 @@ impl World {
             events: Vec::new(),
             touching: Vec::new(),
             time: 0.0,
+            time_rest: 0.0,
             steps: 0,
             scratch: Scratch::default(),
         }

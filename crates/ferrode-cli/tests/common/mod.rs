@@ -31,9 +31,10 @@ pub fn ferrode_with(line: &[&str], variables: &[(&str, &str)]) -> Done {
     }
 }
 
-/// A file of `tests/data`.
+/// A file of `tests/data`; a whole path is taken as it is.
 pub fn data(name: &str) -> String {
-    format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"))
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    folder.join(name).to_str().unwrap().to_owned()
 }
 
 /// A path to write to. Tests use names of their own.
