@@ -25,6 +25,7 @@ mod check;
 mod damping;
 mod ends;
 mod error;
+mod foreign;
 mod group;
 mod gyroscopic;
 mod integrate;
@@ -42,6 +43,8 @@ mod world;
 pub use body::{Body, BodyKey, FiniteRotation, MovedCallback};
 pub use damping::Damping;
 pub use error::Error;
+#[doc(hidden)]
+pub use foreign::{BodyState, MovedObserver};
 pub use group::GroupKey;
 pub use joint::*;
 pub use mass::{Axis, Mass, MeshError};

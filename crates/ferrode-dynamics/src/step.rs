@@ -2,6 +2,7 @@
 
 use crate::body::Body;
 use crate::ends::{Ends, Frame, StepContext};
+use crate::foreign::MovedObserver;
 use crate::island::Islands;
 use crate::joint::Joint;
 use crate::rows::{JointRows, Row, RowCount, Wrench};
@@ -105,6 +106,16 @@ impl World {
         h: f64,
         random: &mut OdeRandom,
     ) -> Result<StepReport, Error> {
+        self.step_in_full(stepper, h, random, &mut |_, _| {})
+    }
+
+    pub(crate) fn step_in_full(
+        &mut self,
+        stepper: Stepper,
+        h: f64,
+        random: &mut OdeRandom,
+        moved: MovedObserver<'_>,
+    ) -> Result<StepReport, Error> {
         crate::softness::step_size(h)?;
         debug_assert_eq!(self.check(), Ok(()));
         let mut report = StepReport::default();
@@ -148,7 +159,7 @@ impl World {
                 Stepper::Direct => direct::sum_forces(island, direct),
                 Stepper::Quick => quick::update_velocities(island, h, quick),
             }
-            self.move_bodies(bodies, island, stepper, h, &mut report);
+            self.move_bodies(bodies, island, (stepper, h), moved, &mut report);
         }
         direct::end_step(direct);
         self.scratch = scratch;
@@ -305,8 +316,8 @@ impl World {
         &mut self,
         bodies: &[u32],
         island: &Island,
-        stepper: Stepper,
-        h: f64,
+        (stepper, h): (Stepper, f64),
+        observer: MovedObserver<'_>,
         report: &mut StepReport,
     ) {
         if stepper == Stepper::Quick {
@@ -316,6 +327,10 @@ impl World {
             }
         }
         for (index, solver_body) in bodies.iter().zip(&island.bodies) {
+            // An observer may have destroyed the body.
+            if self.bodies.get(*index).is_none() {
+                continue;
+            }
             let key = self.body_key(*index);
             let body = self.bodies.at_mut(*index);
             if stepper == Stepper::Direct {
@@ -324,9 +339,14 @@ impl World {
                 body.set_velocities(&advanced);
             }
             integrate::advance_pose(body, h);
+            // What moved it, for callbacks to see: gravity and the forces of joints at stops are in it.
+            body.force = solver_body.force;
+            body.torque = solver_body.torque;
             if let Some(moved) = body.moved.clone() {
                 moved(key, body);
             }
+            observer(self, key);
+            let Ok(body) = self.body_mut(key) else { continue };
             let damping = body.damping;
             damping.apply(&mut body.frame.linear_velocity, &mut body.frame.angular_velocity);
             body.force = Vec3::ZERO;

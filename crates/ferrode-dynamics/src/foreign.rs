@@ -1,0 +1,130 @@
+//! What a C interface over this crate needs and Rust callers don't: raw state, ODE's numbers for parameters, and a look at
+//! every body that a step moves. Hidden from the documentation; the checked functions are the interface.
+
+use crate::body::Body;
+use crate::joint::{Contact, JointKind};
+use crate::{BodyKey, Error, GroupKey, JointFeedback, JointKey, StepReport, Stepper, World};
+use ferrode_math::random::OdeRandom;
+use ferrode_math::{Mat3, Quat, Vec3};
+
+/// All that a program can see of a body's motion, as it is stored.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyState {
+    pub position: Vec3,
+    pub quaternion: Quat,
+    pub rotation: Mat3,
+    pub linear_velocity: Vec3,
+    pub angular_velocity: Vec3,
+    pub force: Vec3,
+    pub torque: Vec3,
+}
+
+/// Called when a step has moved a body, after the body's own moved callback.
+#[doc(hidden)]
+pub type MovedObserver<'a> = &'a mut dyn FnMut(&mut World, BodyKey);
+
+impl Body {
+    #[doc(hidden)]
+    pub fn state(&self) -> BodyState {
+        let f = &self.frame;
+        BodyState {
+            position: f.position,
+            quaternion: f.quaternion,
+            rotation: f.rotation,
+            linear_velocity: f.linear_velocity,
+            angular_velocity: f.angular_velocity,
+            force: self.force,
+            torque: self.torque,
+        }
+    }
+
+    /// Stores a state as it is, finite or not; a step takes a body out whose state isn't. A state that is finite again
+    /// takes it back in.
+    #[doc(hidden)]
+    pub fn set_state(&mut self, state: &BodyState) {
+        let f = &mut self.frame;
+        let moved =
+            f.position != state.position || f.quaternion != state.quaternion || f.rotation != state.rotation;
+        f.position = state.position;
+        f.quaternion = state.quaternion;
+        f.rotation = state.rotation;
+        f.linear_velocity = state.linear_velocity;
+        f.angular_velocity = state.angular_velocity;
+        self.force = state.force;
+        self.torque = state.torque;
+        if moved {
+            self.pose_version = self.pose_version.wrapping_add(1);
+        }
+        if self.quarantined && self.is_finite() {
+            self.quarantined = false;
+        }
+    }
+
+    /// Steps and seconds that are left until the body disables itself.
+    #[doc(hidden)]
+    pub fn idle_countdowns(&self) -> (i32, f64) {
+        (self.idleness.steps_left, self.idleness.time_left)
+    }
+}
+
+impl World {
+    /// As [`World::step_with_random`]; `moved` is called for every body that was moved, where its moved callback is. It
+    /// may change the world in any way.
+    ///
+    /// # Errors
+    /// As [`World::step`].
+    #[doc(hidden)]
+    pub fn step_observed(
+        &mut self,
+        stepper: Stepper,
+        h: f64,
+        random: &mut OdeRandom,
+        moved: MovedObserver<'_>,
+    ) -> Result<StepReport, Error> {
+        self.step_in_full(stepper, h, random, moved)
+    }
+
+    /// A joint's recorded forces, to mark them before a step.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchJoint`].
+    #[doc(hidden)]
+    pub fn joint_feedback_mut(&mut self, joint: JointKey) -> Result<Option<&mut JointFeedback>, Error> {
+        let index = self.joint_index(joint)?;
+        Ok(self.joints.at_mut(index).feedback.as_mut())
+    }
+
+    /// Sets the parameter of ODE's number, whatever the value.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchJoint`].
+    #[doc(hidden)]
+    pub fn set_joint_param_number(&mut self, joint: JointKey, n: i32, value: f64) -> Result<(), Error> {
+        let index = self.joint_index(joint)?;
+        self.joints.at_mut(index).kind.model_mut().set_param(n, value);
+        Ok(())
+    }
+
+    /// The parameter of ODE's number; 0 for unknown ones.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchJoint`].
+    #[doc(hidden)]
+    pub fn joint_param_number(&self, joint: JointKey, n: i32) -> Result<f64, Error> {
+        Ok(self.joints.at(self.joint_index(joint)?).kind.model().param(n))
+    }
+
+    /// As [`World::create_contact`], whatever the numbers.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchGroup`].
+    #[doc(hidden)]
+    pub fn create_contact_unchecked(
+        &mut self,
+        group: Option<GroupKey>,
+        contact: &Contact,
+    ) -> Result<JointKey, Error> {
+        self.insert_joint(JointKind::Contact(Box::new(contact.clone())), group)
+    }
+}

@@ -1,0 +1,349 @@
+//! The records behind handles: worlds, bodies, joints and joint groups.
+//!
+//! A body's record **is** the body's state as the program sees it: getters return pointers into it, setters write to it,
+//! and so may the program. [`take_in`](BodyRecord::take_in) carries what has changed to the engine before the engine
+//! needs it, [`publish`](BodyRecord::publish) carries it back after the engine has changed it.
+
+use crate::fault::{Fault, Outcome, from_engine};
+use crate::mass::MassRecord;
+use crate::real::{Real, Real4, Real12, mat3, matrix3, padded, quat, quaternion, vector};
+use crate::slab::{Handle, Pool, Record, Tag};
+use core::cell::{Cell, RefCell};
+use core::ffi::c_void;
+use ferrode_dynamics::{BodyKey, BodyState, JointKey, JointType, World};
+
+pub type WorldId = Handle<WorldRecord>;
+pub type BodyId = Handle<BodyRecord>;
+pub type JointId = Handle<JointRecord>;
+pub type GroupId = Handle<GroupRecord>;
+
+/// What is called when a step has moved a body.
+pub type MovedCallback = unsafe extern "C-unwind" fn(BodyId);
+
+macro_rules! record {
+    ($name:ident, $pool:ident, $kind:literal) => {
+        static $pool: Pool<$name> = Pool::new();
+        impl Record for $name {
+            const KIND: usize = $kind;
+            fn blank() -> Self {
+                Self::default()
+            }
+            fn tag(&self) -> &Tag {
+                &self.tag
+            }
+            fn pool() -> &'static Pool<Self> {
+                &$pool
+            }
+        }
+    };
+}
+pub(crate) use record;
+
+/// A world.
+#[derive(Default)]
+pub struct WorldRecord {
+    tag: Tag,
+    /// The engine's world. During a moved callback it is the step's own reborrow.
+    engine: Cell<Option<*mut World>>,
+    /// Whether a step runs: the engine's state is the newer one then, not the records'.
+    pub stepping: Cell<bool>,
+    pub data: Cell<*const c_void>,
+    pub settings: crate::stepping::StepSettings,
+    /// Joints that want their forces written down.
+    pub listeners: RefCell<Vec<JointId>>,
+}
+record!(WorldRecord, WORLDS, 1);
+
+/// A body.
+#[derive(Default)]
+pub struct BodyRecord {
+    tag: Tag,
+    pub position: Cell<Real4>,
+    pub quaternion: Cell<Real4>,
+    pub rotation: Cell<Real12>,
+    pub linear_velocity: Cell<Real4>,
+    pub angular_velocity: Cell<Real4>,
+    pub force: Cell<Real4>,
+    pub torque: Cell<Real4>,
+    pub mass: Cell<MassRecord>,
+    pub world: Cell<WorldId>,
+    pub key: Cell<Option<BodyKey>>,
+    pub data: Cell<*mut c_void>,
+    pub moved: Cell<Option<MovedCallback>>,
+}
+record!(BodyRecord, BODIES, 2);
+
+/// A joint.
+#[derive(Default)]
+pub struct JointRecord {
+    tag: Tag,
+    /// Null for a joint of a group whose world was destroyed.
+    pub world: Cell<WorldId>,
+    pub key: Cell<Option<JointKey>>,
+    pub joint_type: Cell<Option<JointType>>,
+    pub data: Cell<*mut c_void>,
+    pub feedback: Cell<*mut FeedbackRecord>,
+    pub grouped: Cell<bool>,
+}
+record!(JointRecord, JOINTS, 3);
+
+/// A joint group: joints of any worlds that are destroyed together.
+#[derive(Default)]
+pub struct GroupRecord {
+    tag: Tag,
+    /// Oldest first.
+    pub joints: RefCell<Vec<JointId>>,
+}
+record!(GroupRecord, GROUPS, 4);
+
+/// `dJointFeedback`: memory of the program's.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct FeedbackRecord {
+    pub force1: Real4,
+    pub torque1: Real4,
+    pub force2: Real4,
+    pub torque2: Real4,
+}
+
+impl<T> Default for Handle<T> {
+    fn default() -> Self {
+        Self::NULL
+    }
+}
+
+impl WorldRecord {
+    /// A record for a new world.
+    pub fn create() -> &'static Self {
+        let record = WORLDS.create();
+        record.engine.set(Some(Box::into_raw(Box::new(World::new()))));
+        record
+    }
+
+    /// Work on the engine's world. The engine never calls out but from a step, which hands over its own reference first,
+    /// and `work` must not call out either.
+    #[inline]
+    pub fn engine<T>(&self, work: impl FnOnce(&mut World) -> T) -> T {
+        let engine = self.engine.get();
+        // A living record has a world; a dead one is never reached through a handle.
+        let engine = engine.expect("a living world has an engine");
+        // SAFETY: the pointer is from Box::into_raw in `create`, or a reborrow that a step lends out while it waits for a
+        // callback. A world is used by one thread at a time (the C interface's contract), `work` does not call out, so no
+        // other reference is in use.
+        work(unsafe { &mut *engine })
+    }
+
+    /// The pointer by which calls reach the engine; a step exchanges it while it calls out.
+    pub fn lend(&self, engine: *mut World) -> Option<*mut World> {
+        self.engine.replace(Some(engine))
+    }
+
+    /// Gives the pointer back that [`WorldRecord::lend`] took.
+    pub fn restore(&self, engine: Option<*mut World>) {
+        self.engine.set(engine);
+    }
+
+    /// Takes all bodies' outside changes in.
+    pub fn take_in_all(&self) {
+        self.engine(|world| {
+            let bodies: Vec<BodyId> = world.bodies().map(|(_, body)| handle_of(body.user_data())).collect();
+            for body in bodies.into_iter().filter_map(BodyId::live) {
+                body.take_in_to(world);
+            }
+        });
+    }
+
+    /// Shows all bodies' states.
+    pub fn publish_all(&self) {
+        self.engine(|world| {
+            for (_, body) in world.bodies() {
+                if let Some(record) = handle_of::<BodyRecord>(body.user_data()).live() {
+                    record.show(&body.state());
+                }
+            }
+        });
+    }
+
+    /// Destroys the world's engine; what is left of the record is the caller's to clear. During a step the engine is only
+    /// forgotten, since the step still runs on it.
+    pub fn destroy_engine(&self) {
+        if let Some(engine) = self.engine.take()
+            && !self.stepping.get()
+        {
+            // SAFETY: the pointer is from Box::into_raw, no step runs on it, and it is out of the record now.
+            drop(unsafe { Box::from_raw(engine) });
+        }
+    }
+}
+
+/// The handle that was kept as a number of the caller's in the engine.
+pub fn handle_of<T: Record>(user_data: u64) -> Handle<T> {
+    Handle::from_address(user_data as usize)
+}
+
+/// The number to keep in the engine.
+pub fn number_of<T: Record>(handle: Handle<T>) -> u64 {
+    handle.address() as u64
+}
+
+/// Whether two groups of reals differ in any bit: −0 is not 0 here, and a NaN equals itself.
+fn differ<const N: usize>(a: &[Real; N], b: &[Real; N]) -> bool {
+    a.iter().zip(b).any(|(a, b)| a.to_bits() != b.to_bits())
+}
+
+/// As [`differ`], for the three components of padded vectors.
+fn differ3(a: &Real4, b: &Real4) -> bool {
+    (0..3).any(|i| a[i].to_bits() != b[i].to_bits())
+}
+
+impl BodyRecord {
+    /// A record for a new body of a world.
+    pub fn create(world: &'static WorldRecord) -> &'static Self {
+        let record = BODIES.create();
+        record.world.set(WorldId::of(world));
+        world.engine(|engine| {
+            let key = engine.create_body();
+            if let Ok(body) = engine.body_mut(key) {
+                body.set_user_data(number_of(BodyId::of(record)));
+                record.show(&body.state());
+            }
+            record.key.set(Some(key));
+        });
+        record.mass.set(MassRecord::UNIT);
+        record
+    }
+
+    /// The body's world and key.
+    pub fn place(&self) -> Outcome<(&'static WorldRecord, BodyKey)> {
+        let world = self.world.get().live().ok_or(Fault::ARGUMENT)?;
+        Ok((world, self.key.get().ok_or(Fault::ARGUMENT)?))
+    }
+
+    /// Work on the engine's body. The state that it sees is the record's.
+    pub fn engine<T>(&self, work: impl FnOnce(&mut ferrode_dynamics::Body) -> T) -> Outcome<T> {
+        let (world, key) = self.place()?;
+        world.engine(|engine| match engine.body_mut(key) {
+            Ok(body) => Ok(work(body)),
+            Err(error) => Err(from_engine(&error).err().unwrap_or(Fault::ARGUMENT)),
+        })
+    }
+
+    /// Changes the state in the record. During a step the engine's state is the newer one: it is shown first, and takes
+    /// the change in at once.
+    #[inline]
+    pub fn change(&self, work: impl FnOnce(&Self)) {
+        let stepping = self.world.get().live().filter(|world| world.stepping.get());
+        if let Some(world) = stepping {
+            self.publish(world);
+            work(self);
+            world.engine(|engine| self.take_in_to(engine));
+        } else {
+            work(self);
+        }
+    }
+
+    /// The state as it is now, for a getter.
+    #[inline]
+    pub fn current(&self) -> &Self {
+        if let Some(world) = self.world.get().live().filter(|world| world.stepping.get()) {
+            self.publish(world);
+        }
+        self
+    }
+
+    /// Shows the engine's state.
+    pub fn publish(&self, world: &WorldRecord) {
+        let Some(key) = self.key.get() else { return };
+        world.engine(|engine| {
+            if let Ok(body) = engine.body(key) {
+                self.show(&body.state());
+            }
+        });
+    }
+
+    pub fn show(&self, state: &BodyState) {
+        self.position.set(padded(state.position));
+        self.quaternion.set(quaternion(state.quaternion));
+        self.rotation.set(matrix3(&state.rotation));
+        self.linear_velocity.set(padded(state.linear_velocity));
+        self.angular_velocity.set(padded(state.angular_velocity));
+        self.force.set(padded(state.force));
+        self.torque.set(padded(state.torque));
+    }
+
+    /// Takes outside changes in, before the engine needs the body. During a step there is nothing to take in.
+    pub fn take_in(&self) {
+        if let Some(world) = self.world.get().live().filter(|world| !world.stepping.get()) {
+            world.engine(|engine| self.take_in_to(engine));
+        }
+    }
+
+    /// Only what differs from what was shown is taken in: with reals narrower than the engine's the rest keeps its digits.
+    pub fn take_in_to(&self, engine: &mut World) {
+        let Some(Ok(body)) = self.key.get().map(|key| engine.body_mut(key)) else { return };
+        let mut state = body.state();
+        let mut changed = false;
+        let mut vectors = [
+            (&self.position, &mut state.position),
+            (&self.linear_velocity, &mut state.linear_velocity),
+            (&self.angular_velocity, &mut state.angular_velocity),
+            (&self.force, &mut state.force),
+            (&self.torque, &mut state.torque),
+        ];
+        for (shown, engines) in &mut vectors {
+            let shown = shown.get();
+            if differ3(&shown, &padded(**engines)) {
+                **engines = vector(&shown);
+                changed = true;
+            }
+        }
+        if differ(&self.quaternion.get(), &quaternion(state.quaternion)) {
+            state.quaternion = quat(&self.quaternion.get());
+            changed = true;
+        }
+        let rotation = mat3(&self.rotation.get());
+        if differ(&matrix3(&rotation), &matrix3(&state.rotation)) {
+            state.rotation = rotation;
+            changed = true;
+        }
+        if changed {
+            body.set_state(&state);
+        }
+    }
+
+    /// The body of a key, in a world where every body has its record.
+    pub fn of_key(engine: &World, key: Option<BodyKey>) -> BodyId {
+        let body = key.and_then(|key| engine.body(key).ok());
+        body.map_or(BodyId::NULL, |body| handle_of(body.user_data()))
+    }
+}
+
+impl JointRecord {
+    /// The joint's world and key.
+    pub fn place(&self) -> Outcome<(&'static WorldRecord, JointKey)> {
+        let world = self.world.get().live().ok_or(Fault::ARGUMENT)?;
+        Ok((world, self.key.get().ok_or(Fault::ARGUMENT)?))
+    }
+
+    /// The records of the joint's bodies, in the order of the call that attached them.
+    pub fn bodies(&self) -> Outcome<[BodyId; 2]> {
+        let (world, key) = self.place()?;
+        world.engine(|engine| {
+            let keys = engine.joint_bodies(key).map_err(|_| Fault::ARGUMENT)?;
+            Ok(keys.map(|key| BodyRecord::of_key(engine, key)))
+        })
+    }
+}
+
+/// The living record behind a handle, or ODE's fault for a bad one.
+pub trait Required<T> {
+    /// The record, or the fault.
+    fn get(self) -> Outcome<&'static T>;
+}
+
+impl<T: Record> Required<T> for Handle<T> {
+    #[inline]
+    fn get(self) -> Outcome<&'static T> {
+        self.live().ok_or(Fault::ARGUMENT)
+    }
+}

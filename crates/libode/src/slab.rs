@@ -1,0 +1,187 @@
+//! Where the records behind handles live.
+//!
+//! Records of one kind fill chunks of their own, and a chunk is never given back: the memory behind a stale handle stays a
+//! record of the same kind, whose tag tells that it is dead. A table of all chunks tells a handle from any other number
+//! without looking at what it points to. So no handle, however wrong, leads to undefined behaviour.
+
+use core::alloc::Layout;
+use core::cell::Cell;
+use core::ptr::NonNull;
+use core::sync::atomic::{AtomicUsize, Ordering};
+use std::collections::VecDeque;
+use std::sync::{Mutex, PoisonError};
+
+/// Size and alignment of a chunk.
+const CHUNK: usize = 1 << 16;
+/// Chunks that the table can hold: 2 GiB of records.
+const TABLE: usize = 1 << 16;
+/// Dead records are reused oldest first, and not before there are so many, so that stale handles are found out for long.
+const RESERVE: usize = 64;
+
+/// Addresses of all chunks, with the kind of their records in the low bits; open addressing.
+static CHUNKS: [AtomicUsize; TABLE] = [const { AtomicUsize::new(0) }; TABLE];
+
+fn slot_of(address: usize) -> usize {
+    (address / CHUNK).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> (usize::BITS - TABLE.trailing_zeros())
+}
+
+fn is_chunk(address: usize, kind: usize) -> bool {
+    let mut slot = slot_of(address);
+    for _ in 0..TABLE {
+        let entry = CHUNKS[slot].load(Ordering::Acquire);
+        if entry == address | kind {
+            return true;
+        }
+        if entry == 0 {
+            return false;
+        }
+        slot = (slot + 1) % TABLE;
+    }
+    false
+}
+
+fn add_chunk(address: usize, kind: usize) -> bool {
+    let mut slot = slot_of(address);
+    for _ in 0..TABLE {
+        if CHUNKS[slot].compare_exchange(0, address | kind, Ordering::AcqRel, Ordering::Relaxed).is_ok() {
+            return true;
+        }
+        slot = (slot + 1) % TABLE;
+    }
+    false
+}
+
+/// The first field of every record.
+#[derive(Debug, Default)]
+pub struct Tag(Cell<bool>);
+
+/// A kind of record: plain cells, changed through shared references.
+pub trait Record: Sized + 'static {
+    /// A number below 16 that no other kind has.
+    const KIND: usize;
+
+    /// A blank record.
+    fn blank() -> Self;
+
+    /// Its tag.
+    fn tag(&self) -> &Tag;
+
+    /// The pool of its kind.
+    fn pool() -> &'static Pool<Self>;
+}
+
+/// The records of one kind that can be used again.
+pub struct Pool<T> {
+    free: Mutex<VecDeque<NonNull<T>>>,
+}
+
+// SAFETY: the pointers are to memory that lives for ever; the mutex guards the queue.
+unsafe impl<T> Send for Pool<T> {}
+// SAFETY: as above.
+unsafe impl<T> Sync for Pool<T> {}
+
+impl<T: Record> Default for Pool<T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Record> Pool<T> {
+    pub const fn new() -> Self {
+        Self { free: Mutex::new(VecDeque::new()) }
+    }
+
+    /// A blank living record at an address of its own.
+    pub fn create(&self) -> &'static T {
+        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        if free.len() <= RESERVE {
+            Self::carve_chunk(&mut free);
+        }
+        let Some(place) = free.pop_front() else { std::alloc::handle_alloc_error(Layout::new::<T>()) };
+        // SAFETY: the place is in a chunk of Ts, initialised when carved, aligned, and lives for ever. It was in the
+        // queue, so no living object of the program's is behind it; blank Ts have nothing to drop.
+        unsafe {
+            place.as_ptr().write(T::blank());
+            let record = place.as_ref();
+            record.tag().0.set(true);
+            record
+        }
+    }
+
+    fn carve_chunk(free: &mut VecDeque<NonNull<T>>) {
+        let Ok(layout) = Layout::from_size_align(CHUNK, CHUNK) else { return };
+        // SAFETY: the layout is not empty.
+        let Some(chunk) = NonNull::new(unsafe { std::alloc::alloc(layout) }) else { return };
+        let stride = size_of::<T>();
+        for i in 0..CHUNK / stride {
+            // SAFETY: within the chunk, whose alignment exceeds T's; stride is T's size, a multiple of its alignment.
+            let place = unsafe { chunk.add(i * stride).cast::<T>() };
+            // SAFETY: fresh memory of the right size and alignment.
+            unsafe { place.as_ptr().write(T::blank()) };
+            free.push_back(place);
+        }
+        if !add_chunk(chunk.as_ptr().expose_provenance(), T::KIND) {
+            // More than 2 GiB of records: these can't be told from foreign pointers, so they are not used.
+            free.clear();
+        }
+    }
+
+    /// Marks a record as dead.
+    pub fn destroy(&self, record: &'static T) {
+        record.tag().0.set(false);
+        self.free.lock().unwrap_or_else(PoisonError::into_inner).push_back(NonNull::from(record));
+    }
+}
+
+/// A handle as C passes it: anything at all.
+#[repr(transparent)]
+#[derive(Debug)]
+pub struct Handle<T>(*mut T);
+
+impl<T> Clone for Handle<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Handle<T> {}
+
+impl<T> Handle<T> {
+    pub const NULL: Self = Self(core::ptr::null_mut());
+
+    pub fn is_null(self) -> bool {
+        self.0.is_null()
+    }
+}
+
+impl<T: Record> Handle<T> {
+    /// The handle of a record.
+    pub fn of(record: &'static T) -> Self {
+        Self(core::ptr::from_ref(record).cast_mut())
+    }
+
+    /// The handle at an address that was a handle's.
+    pub fn from_address(address: usize) -> Self {
+        Self(core::ptr::with_exposed_provenance_mut(address))
+    }
+
+    /// The address, to be kept as a number.
+    pub fn address(self) -> usize {
+        self.0.expose_provenance()
+    }
+
+    /// The living record behind the handle.
+    #[inline]
+    pub fn live(self) -> Option<&'static T> {
+        let address = self.0.addr();
+        let offset = address % CHUNK;
+        let fits = offset.is_multiple_of(size_of::<T>()) && offset / size_of::<T>() < CHUNK / size_of::<T>();
+        if !fits || !is_chunk(address - offset, T::KIND) {
+            return None;
+        }
+        // SAFETY: the address is that of a record in a chunk of Ts, which was initialised when the chunk was carved, is
+        // never freed, and is only ever changed through cells.
+        let record = unsafe { &*self.0 };
+        record.tag().0.get().then_some(record)
+    }
+}

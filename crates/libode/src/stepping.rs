@@ -1,0 +1,258 @@
+//! Steps: what is taken in before, called meanwhile, and shown after.
+
+use crate::fault::{Fault, Outcome, export, fence, message};
+use crate::misc;
+use crate::real::{In, Real, f, padded};
+use crate::record::{BodyId, JointId, Required, WorldId, WorldRecord, handle_of};
+use crate::threading::{FunctionsInfo, ImplementationId};
+use core::cell::Cell;
+use core::ffi::{c_int, c_uint, c_void};
+use ferrode_dynamics::{BodyKey, JointFeedback, Stepper, World};
+use ferrode_math::Vec3;
+use ferrode_math::random::OdeRandom;
+
+/// `dWorldStepReserveInfo`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct ReserveInfo {
+    struct_size: c_uint,
+    reserve_factor: f32,
+    reserve_minimum: c_uint,
+}
+
+impl Default for ReserveInfo {
+    fn default() -> Self {
+        Self { struct_size: size_of::<Self>() as c_uint, reserve_factor: 1.2, reserve_minimum: 65536 }
+    }
+}
+
+/// `dWorldStepMemoryFunctionsInfo`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct MemoryFunctions {
+    struct_size: c_uint,
+    alloc_block: Option<unsafe extern "C-unwind" fn(usize) -> *mut c_void>,
+    shrink_block: Option<unsafe extern "C-unwind" fn(*mut c_void, usize, usize) -> *mut c_void>,
+    free_block: Option<unsafe extern "C-unwind" fn(*mut c_void, usize)>,
+}
+
+/// A block that a program's memory manager gave, and the manager that takes it back.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    address: *mut c_void,
+    size: usize,
+    manager: MemoryFunctions,
+}
+
+/// How a world steps, apart from the engine's own parameters.
+#[derive(Default)]
+pub struct StepSettings {
+    /// What was asked for, which may be less than none.
+    pub quick_iterations: Cell<Option<c_int>>,
+    pub max_threads: Cell<c_uint>,
+    reserve: Cell<ReserveInfo>,
+    manager: Cell<Option<MemoryFunctions>>,
+    block: Cell<Option<Block>>,
+    pub threading: Cell<Option<(FunctionsInfo, ImplementationId)>>,
+}
+
+impl StepSettings {
+    /// Gives the program's memory manager its block back.
+    pub fn free_step_memory(&self) {
+        if let Some(Block { address, size, manager }) = self.block.take()
+            && let Some(free) = manager.free_block
+        {
+            // SAFETY: the block came from this manager's alloc_block, with this size, and is given back once.
+            unsafe { free(address, size) };
+        }
+    }
+
+    /// Asks the program's memory manager for what ODE would work in. The engine has memory of its own; the program gets
+    /// to see its manager used, in balance. `false` if it has no memory to give.
+    fn reserve_step_memory(&self, bodies: usize, joints: usize) -> bool {
+        let Some(manager) = self.manager.get() else { return true };
+        let Some(alloc) = manager.alloc_block else { return true };
+        let needed = 1024 + 256 * bodies + 1024 * joints;
+        if self.block.get().is_some_and(|block| block.size >= needed) {
+            return true;
+        }
+        self.free_step_memory();
+        let policy = self.reserve.get();
+        let size = ((needed as f64 * f64::from(policy.reserve_factor)) as usize)
+            .max(policy.reserve_minimum as usize);
+        // SAFETY: the program's own function, called as its header says.
+        let address = unsafe { alloc(size) };
+        if address.is_null() {
+            return false;
+        }
+        self.block.set(Some(Block { address, size, manager }));
+        true
+    }
+}
+
+/// One step, as all entry points make it.
+pub fn step(world: &'static WorldRecord, stepper: Stepper, stepsize: Real) -> Outcome<c_int> {
+    let h = f(stepsize);
+    if h.is_nan() || h <= 0.0 || h.is_infinite() {
+        return Err(Fault::user("stepsize must be > 0"));
+    }
+    let (bodies, joints) = world.engine(|engine| (engine.body_count(), engine.joint_count()));
+    if !world.settings.reserve_step_memory(bodies, joints) {
+        return Ok(0);
+    }
+    // A callback that left by longjmp may have left this set.
+    world.stepping.set(false);
+    world.take_in_all();
+    mark_feedback(world);
+
+    let seed = misc::seed();
+    let mut random = OdeRandom::new(seed);
+    let mut observe = |engine: &mut World, key: BodyKey| call_back(world, engine, key);
+    let engine = world.engine(core::ptr::from_mut);
+    world.stepping.set(true);
+    // SAFETY: as in `WorldRecord::engine`; when the step calls out, `call_back` lends its own reborrow to other calls.
+    let report = unsafe { &mut *engine }.step_observed(stepper, h, &mut random, &mut observe);
+    world.restore(Some(engine));
+    world.stepping.set(false);
+    if random.seed() != seed {
+        misc::set_seed(random.seed());
+    }
+    world.publish_all();
+    write_feedback(world);
+    let report = report.map_err(|_| Fault::user("stepsize must be > 0"))?;
+    for _ in 0..report.lcp_failures {
+        message(3, "LCP internal error: no step length", "");
+    }
+    Ok(1)
+}
+
+/// Shows a body that was just moved and calls its moved callback, if it has one. What the callback changes holds.
+fn call_back(world: &'static WorldRecord, engine: &mut World, key: BodyKey) {
+    let Ok(body) = engine.body(key) else { return };
+    let handle: BodyId = handle_of(body.user_data());
+    let Some(record) = handle.live() else { return };
+    record.show(&body.state());
+    let Some(moved) = record.moved.get() else { return };
+    let before = world.lend(engine);
+    // SAFETY: the program's own function, called as its header says, with the handle that it set it for. No reference to
+    // the engine is used meanwhile but what `lend` lends.
+    unsafe { moved(handle) };
+    world.restore(before);
+    if let Some(record) = handle.live() {
+        record.take_in_to(engine);
+    }
+}
+
+/// Marks all recorded forces, to tell afterwards which joints the step has written for.
+fn mark_feedback(world: &WorldRecord) {
+    let listeners = world.listeners.borrow();
+    world.engine(|engine| {
+        for joint in listeners.iter().filter_map(|joint| joint.live()) {
+            if let Some(Ok(Some(feedback))) = joint.key.get().map(|key| engine.joint_feedback_mut(key)) {
+                let mark = Vec3::splat(f64::NAN);
+                *feedback = JointFeedback { force1: mark, torque1: mark, force2: mark, torque2: mark };
+            }
+        }
+    });
+}
+
+/// Copies forces to the program's records. ODE leaves a record as it was if its joint had no rows, and the second body's
+/// part if there is none.
+fn write_feedback(world: &WorldRecord) {
+    let listeners = world.listeners.borrow();
+    world.engine(|engine| {
+        for joint in listeners.iter().filter_map(|joint| joint.live()) {
+            let Some(Ok(Some(feedback))) = joint.key.get().map(|key| engine.joint_feedback(key)) else {
+                continue;
+            };
+            let target = joint.feedback.get();
+            if target.is_null() || feedback.force1.x.is_nan() {
+                continue;
+            }
+            // SAFETY: the program keeps the record it gave until it sets another, or the joint dies (the contract of
+            // dJointSetFeedback).
+            let target = unsafe { &mut *target };
+            target.force1 = padded(feedback.force1);
+            target.torque1 = padded(feedback.torque1);
+            if !feedback.force2.x.is_nan() {
+                target.force2 = padded(feedback.force2);
+                target.torque2 = padded(feedback.torque2);
+            }
+        }
+    });
+}
+
+/// A joint starts or stops to have its forces written down.
+pub fn listen(world: &WorldRecord, joint: JointId, on: bool) {
+    let mut listeners = world.listeners.borrow_mut();
+    let place = listeners.iter().position(|other| other.address() == joint.address());
+    match (place, on) {
+        (None, true) => listeners.push(joint),
+        (Some(place), false) => drop(listeners.swap_remove(place)),
+        _ => {}
+    }
+}
+
+fn step_on(world: WorldId, stepper: Stepper, stepsize: Real) -> Outcome<c_int> {
+    let world = world.get()?;
+    crate::threading::run_step(world, stepper, stepsize)
+}
+
+/// One step by the exact solver.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn dWorldStep(world: WorldId, stepsize: Real) -> c_int {
+    fence("dWorldStep", || step_on(world, Stepper::Direct, stepsize))
+}
+
+/// One step by the iterative solver.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn dWorldQuickStep(world: WorldId, stepsize: Real) -> c_int {
+    fence("dWorldQuickStep", || step_on(world, Stepper::Quick, stepsize))
+}
+
+export! {
+    fn dWorldSetStepIslandsProcessingMaxThreadCount(world: WorldId, count: c_uint) {
+        world.get()?.settings.max_threads.set(count)
+    }
+    fn dWorldGetStepIslandsProcessingMaxThreadCount(world: WorldId) -> c_uint {
+        world.get()?.settings.max_threads.get()
+    }
+    /// Worlds don't share memory here: there is nothing to set up, and it always works.
+    fn dWorldUseSharedWorkingMemory(world: WorldId, from: WorldId) -> c_int {
+        world.get()?;
+        if !from.is_null() {
+            from.get()?;
+        }
+        1
+    }
+    fn dWorldCleanupWorkingMemory(world: WorldId) { world.get()?.settings.free_step_memory() }
+    fn dWorldSetStepMemoryReservationPolicy(world: WorldId, policy: In<ReserveInfo>) -> c_int {
+        let world = world.get()?;
+        let policy = policy.optional().map(|[policy]| policy);
+        if policy.is_some_and(|p| p.struct_size as usize != size_of::<ReserveInfo>() || p.reserve_factor < 1.0) {
+            return Err(Fault::user("Bad policy info"));
+        }
+        world.settings.reserve.set(policy.unwrap_or_default());
+        1
+    }
+    fn dWorldSetStepMemoryManager(world: WorldId, functions: In<MemoryFunctions>) -> c_int {
+        let world = world.get()?;
+        let functions = functions.optional().map(|[functions]| functions);
+        if functions.is_some_and(|m| m.struct_size as usize != size_of::<MemoryFunctions>()
+            || m.alloc_block.is_none() || m.free_block.is_none()) {
+            return Err(Fault::user("Bad memory functions info"));
+        }
+        world.settings.free_step_memory();
+        world.settings.manager.set(functions);
+        1
+    }
+    fn dWorldSetStepThreadingImplementation(
+        world: WorldId, functions: In<FunctionsInfo>, implementation: ImplementationId,
+    ) {
+        let functions = functions.optional().map(|[functions]| functions);
+        if functions.is_some_and(|f| (f.struct_size as usize) < size_of::<FunctionsInfo>()) {
+            return Err(Fault::user("Bad threading functions info"));
+        }
+        world.get()?.settings.threading.set(functions.map(|functions| (functions, implementation)))
+    }
+}
