@@ -141,7 +141,7 @@ enum Broad {
     Hash(HashSpace),
     Quadtree(QuadtreeSpace),
     SweepAndPrune(SweepAndPruneSpace),
-    Bvh(BvhSpace),
+    Bvh(Box<BvhSpace>),
 }
 
 impl Broad {
@@ -155,7 +155,7 @@ impl Broad {
                 Self::Quadtree(QuadtreeSpace::new(center, half_sides, depth))
             }
             SpaceKind::SweepAndPrune(order) => Self::SweepAndPrune(SweepAndPruneSpace::new(order)),
-            SpaceKind::Bvh => Self::Bvh(BvhSpace::new()),
+            SpaceKind::Bvh => Self::Bvh(Box::default()),
         }
     }
 
@@ -165,7 +165,7 @@ impl Broad {
             Self::Hash(s) => s,
             Self::Quadtree(s) => s,
             Self::SweepAndPrune(s) => s,
-            Self::Bvh(s) => s,
+            Self::Bvh(s) => &**s,
         }
     }
 
@@ -175,7 +175,7 @@ impl Broad {
             Self::Hash(s) => s,
             Self::Quadtree(s) => s,
             Self::SweepAndPrune(s) => s,
-            Self::Bvh(s) => s,
+            Self::Bvh(s) => &mut **s,
         }
     }
 

@@ -1,35 +1,81 @@
-use super::tree::AabbTree;
+use super::dynamic_tree::DynamicTree;
+use super::f32_box::Box32;
 use super::{BroadPhase, Members, Proxy, ProxyId, ProxyTable, Scratch};
 use crate::filter::passes;
-use ferrode_math::Aabb;
+use ferrode_math::{Aabb, Vec3};
 
 /// Leaves are larger than the geoms by this part of their size, so that small moves change nothing.
 const FAT: f64 = 0.1;
-/// No leaf: the geom's box is unbounded, or it is not in this space.
-const NONE: u32 = u32::MAX;
+/// A leaf that its geom left grows in the direction of the move by this part of it: the geom will go on.
+const AHEAD: f64 = 1.0;
 
-/// A tree of boxes that is kept from step to step: the space for many geoms of which most move little.
+/// Trees of boxes that are kept from step to step: the space for many geoms of which most move little.
 ///
-/// Pairs come in the order in which the geoms were inserted, the earlier one first; neither movement nor numbering
-/// changes it. ODE has no such space.
+/// ```text
+///   still tree    what has not moved since it was added; left alone
+///   moving tree   the rest: leaves are larger than their geoms and change only when these leave them
+///   unbounded     planes: compared with everything
+///   near          all pairs whose leaves overlap, sorted; only a leaf that changed looks for its pairs anew
+/// ```
+///
+/// A step costs what moved, and what is near something. Pairs come in the order in which the geoms were inserted, the
+/// earlier one first; neither movement nor numbering changes it. ODE has no such space.
 #[derive(Clone, Debug, Default)]
 pub struct BvhSpace {
     members: Members,
-    tree: AabbTree,
+    still: DynamicTree,
+    moving: DynamicTree,
     /// By proxy number.
     entries: Vec<Entry>,
+    /// Marked since the last update.
     moved: Vec<ProxyId>,
     unbounded: Vec<ProxyId>,
     next_rank: u64,
+    near: Vec<Pair>,
+    /// Working memory of the update.
+    work: Work,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Work {
+    changed: Vec<ProxyId>,
+    found: Vec<Pair>,
+    merged: Vec<Pair>,
+    stack: Vec<(u32, u32)>,
+    /// New leaves of the still and of the moving tree.
+    new: [Vec<(u32, Box32)>; 2],
+    /// New boxes of leaves of the moving tree.
+    changes: Vec<(u32, Box32)>,
+}
+
+/// Two members in order of insertion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Pair {
+    ranks: (u64, u64),
+    a: ProxyId,
+    b: ProxyId,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Home {
+    /// Not in this space, or added since the last update.
+    None,
+    Still,
+    Moving,
+    Unbounded,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Entry {
-    leaf: u32,
-    moved: bool,
-    /// Insertions before this one.
+    /// Insertions before this one: no two members ever have the same.
     rank: u64,
+    home: Home,
+    moved: bool,
+    /// Its leaf is another than at the last update.
+    changed: bool,
 }
+
+const ABSENT: Entry = Entry { rank: u64::MAX, home: Home::None, moved: false, changed: false };
 
 impl BvhSpace {
     /// A space without members.
@@ -49,22 +95,157 @@ impl BvhSpace {
         }
     }
 
-    /// Takes a proxy out of the tree or the list of unbounded ones.
+    /// Takes a proxy from where it is.
     fn unlink(&mut self, id: ProxyId) {
-        let entry = &mut self.entries[id.0 as usize];
-        if entry.leaf != NONE {
-            self.tree.remove(entry.leaf);
-            entry.leaf = NONE;
-        } else {
-            self.unbounded.retain(|&x| x != id);
+        match core::mem::replace(&mut self.entries[id.0 as usize].home, Home::None) {
+            Home::None => {}
+            Home::Still => self.still.remove(id.0),
+            Home::Moving => self.moving.remove(id.0),
+            Home::Unbounded => self.unbounded.retain(|&x| x != id),
         }
     }
 
-    /// Puts a pair in order of insertion.
-    fn ordered(&self, a: ProxyId, b: ProxyId) -> (u64, u64, ProxyId, ProxyId) {
-        let (ra, rb) = (self.entry(a).rank, self.entry(b).rank);
-        if ra < rb { (ra, rb, a, b) } else { (rb, ra, b, a) }
+    /// Puts leaves where their geoms are, and notes which are others than before.
+    fn move_leaves(&mut self, table: &ProxyTable) {
+        for k in 0..self.moved.len() {
+            let id = self.moved[k];
+            let entry = &mut self.entries[id.0 as usize];
+            if !core::mem::take(&mut entry.moved) {
+                // Removed, or removed and added again.
+                continue;
+            }
+            let (home, aabb) = (entry.home, &table.get(id).aabb);
+            let old = match home {
+                Home::Still => self.still.leaf(id.0),
+                Home::Moving => self.moving.leaf(id.0),
+                Home::None | Home::Unbounded => None,
+            };
+            if old.is_some_and(|leaf| leaf.contains(aabb)) {
+                continue;
+            }
+            entry.changed = true;
+            self.work.changed.push(id);
+            if home == Home::Moving && aabb.is_finite() {
+                self.work.changes.push((id.0, fat(aabb, old)));
+                continue;
+            }
+            self.unlink(id);
+            self.entries[id.0 as usize].home = if !aabb.is_finite() {
+                self.unbounded.push(id);
+                Home::Unbounded
+            } else if home == Home::None {
+                self.work.new[0].push((id.0, fat(aabb, None)));
+                Home::Still
+            } else {
+                self.work.new[1].push((id.0, fat(aabb, None)));
+                Home::Moving
+            };
+        }
+        self.moved.clear();
+        let Work { new, changes, .. } = &mut self.work;
+        if 2 * changes.len() > self.moving.len() + 16 {
+            // Most leaves: building the tree anew costs less, and its boxes are smaller.
+            changes.iter().for_each(|(payload, leaf)| self.moving.set_box(*payload, leaf));
+            new[1].extend(self.moving.leaves());
+            self.moving.build(&mut new[1]);
+            new[1].clear();
+        } else {
+            changes.iter().for_each(|(payload, leaf)| self.moving.change(*payload, leaf));
+        }
+        changes.clear();
+        for (tree, new) in [&mut self.still, &mut self.moving].into_iter().zip(new) {
+            if 4 * new.len() > tree.len() + 16 {
+                new.extend(tree.leaves());
+                tree.build(new);
+            } else {
+                new.iter().for_each(|(payload, leaf)| tree.insert(*payload, leaf));
+            }
+            new.clear();
+        }
     }
+
+    /// Finds the pairs of the leaves that changed, and forgets those that they had before.
+    fn find_pairs(&mut self) {
+        let Self { still, moving, entries, near, work, members, .. } = self;
+        let Work { changed, found, merged, stack, .. } = work;
+        let pair = |a: u32, b: u32| {
+            let (ra, rb) = (entries[a as usize].rank, entries[b as usize].rank);
+            let (a, b) = (ProxyId(a), ProxyId(b));
+            if ra < rb { Pair { ranks: (ra, rb), a, b } } else { Pair { ranks: (rb, ra), a: b, b: a } }
+        };
+        found.clear();
+        let still_changed = changed.iter().filter(|id| entries[id.0 as usize].home != Home::Moving).count();
+        // Of a tree of which most leaves changed, all pairs are found anew: one walk down two branches at a time.
+        let all = still_changed > 0 && 2 * changed.len() > members.len();
+        let all_moving = all || (still_changed == 0 && 2 * changed.len() > moving.len());
+        if all {
+            still.pairs(stack, |a, b| found.push(pair(a, b)));
+        }
+        if all_moving {
+            moving.pairs(stack, |a, b| found.push(pair(a, b)));
+            moving.pairs_with(still, stack, |a, b| found.push(pair(a, b)));
+        } else {
+            for &id in changed.iter() {
+                let entry = &entries[id.0 as usize];
+                let leaf = match entry.home {
+                    Home::Still => still.leaf(id.0),
+                    Home::Moving => moving.leaf(id.0),
+                    Home::None | Home::Unbounded => None,
+                };
+                let Some(leaf) = leaf else { continue };
+                let mut consider = |other: u32| {
+                    let o = &entries[other as usize];
+                    // Two that changed find each other: once is enough.
+                    if (!o.changed && other != id.0) || entry.rank < o.rank {
+                        found.push(pair(id.0, other));
+                    }
+                };
+                moving.query(&leaf, &mut consider);
+                still.query(&leaf, &mut consider);
+            }
+        }
+        found.sort_unstable();
+        merged.clear();
+        let stays = |p: &&Pair| {
+            let fresh = |e: &Entry| all || e.changed || (all_moving && e.home == Home::Moving);
+            let (a, b) = (&entries[p.a.0 as usize], &entries[p.b.0 as usize]);
+            !fresh(a) && !fresh(b) && p.ranks == (a.rank, b.rank)
+        };
+        merge(near.iter().filter(stays), found.iter(), |p| merged.push(*p));
+        core::mem::swap(near, merged);
+        for id in changed.drain(..) {
+            entries[id.0 as usize].changed = false;
+        }
+    }
+}
+
+/// The leaf of a box that left the leaf `old`: larger all round, and further ahead.
+fn fat(aabb: &Aabb, old: Option<Box32>) -> Box32 {
+    let e = aabb.extent();
+    let fat = aabb.expanded(FAT * e.x.max(e.y).max(e.z));
+    let Some(old) = old else { return Box32::around(&fat) };
+    let center = Vec3::new(old.center2(0).into(), old.center2(1).into(), old.center2(2).into()) * 0.5;
+    let ahead = (aabb.center() - center) * AHEAD;
+    // What jumped does not go on like that.
+    let ahead = if ahead.abs_max() < e.abs_max() { ahead } else { Vec3::ZERO };
+    Box32::around(&Aabb::new(fat.min + ahead.min(Vec3::ZERO), fat.max + ahead.max(Vec3::ZERO)))
+}
+
+/// Calls `take` with the items of two sorted lists in order.
+fn merge<'a>(
+    a: impl Iterator<Item = &'a Pair>,
+    b: impl Iterator<Item = &'a Pair>,
+    mut take: impl FnMut(&Pair),
+) {
+    let (mut a, mut b) = (a.peekable(), b.peekable());
+    while let Some(y) = b.peek() {
+        while let Some(x) = a.next_if(|x| x < y) {
+            take(x);
+        }
+        take(y);
+        b.next();
+    }
+    a.for_each(take);
 }
 
 impl BroadPhase for BvhSpace {
@@ -72,9 +253,9 @@ impl BroadPhase for BvhSpace {
         self.members.push_front(table, id);
         let i = id.0 as usize;
         if i >= self.entries.len() {
-            self.entries.resize(i + 1, Entry { leaf: NONE, moved: false, rank: 0 });
+            self.entries.resize(i + 1, ABSENT);
         }
-        self.entries[i] = Entry { leaf: NONE, moved: false, rank: self.next_rank };
+        self.entries[i] = Entry { rank: self.next_rank, ..ABSENT };
         self.next_rank += 1;
         self.mark(id);
     }
@@ -82,9 +263,7 @@ impl BroadPhase for BvhSpace {
     fn remove(&mut self, table: &mut ProxyTable, id: ProxyId) {
         self.members.remove(table, id);
         self.unlink(id);
-        if self.entry(id).moved {
-            self.moved.retain(|&x| x != id);
-        }
+        self.entries[id.0 as usize] = ABSENT;
     }
 
     fn moved(&mut self, table: &mut ProxyTable, id: ProxyId) {
@@ -93,50 +272,47 @@ impl BroadPhase for BvhSpace {
     }
 
     fn update(&mut self, table: &ProxyTable) {
-        for k in 0..self.moved.len() {
-            let id = self.moved[k];
-            let aabb = table.get(id).aabb;
-            let entry = &mut self.entries[id.0 as usize];
-            entry.moved = false;
-            if entry.leaf != NONE && self.tree.aabb(entry.leaf).contains(&aabb) {
-                continue;
-            }
-            self.unlink(id);
-            if aabb.is_finite() {
-                let e = aabb.extent();
-                let fat = aabb.expanded(FAT * e.x.max(e.y).max(e.z));
-                self.entries[id.0 as usize].leaf = self.tree.insert(id.0, fat);
-            } else {
-                self.unbounded.push(id);
-            }
+        self.move_leaves(table);
+        if !self.work.changed.is_empty() {
+            self.find_pairs();
         }
-        self.moved.clear();
     }
 
     fn collide(&self, table: &ProxyTable, scratch: &mut Scratch, report: &mut dyn FnMut(ProxyId, ProxyId)) {
-        let s = &mut scratch.bvh;
-        s.pairs.clear();
-        let pairs = &mut s.pairs;
-        let mut consider = |a: ProxyId, b: ProxyId| {
+        let list = &mut scratch.bvh.pairs;
+        list.clear();
+        let mut add = |a: ProxyId, b: ProxyId| {
             let (pa, pb) = (table.get(a), table.get(b));
+            let (ra, rb) = (self.entry(a).rank, self.entry(b).rank);
             if pa.enabled && pb.enabled && passes(pa, pb) {
-                pairs.push(self.ordered(a, b));
+                list.push(if ra < rb {
+                    Pair { ranks: (ra, rb), a, b }
+                } else {
+                    Pair { ranks: (rb, ra), a: b, b: a }
+                });
             }
         };
-        self.tree.pairs(&mut s.stack, |a, b| consider(ProxyId(a), ProxyId(b)));
         for (i, &a) in self.unbounded.iter().enumerate() {
             for &b in &self.unbounded[..i] {
-                consider(a, b);
+                add(a, b);
             }
-            self.tree.query(&table.get(a).aabb, |b| consider(a, ProxyId(b)));
+            let around = Box32::around(&table.get(a).aabb);
+            self.still.query(&around, |b| add(a, ProxyId(b)));
+            self.moving.query(&around, |b| add(a, ProxyId(b)));
         }
-        pairs.sort_unstable_by_key(|p| (p.0, p.1));
-        for &(_, _, a, b) in pairs.iter() {
-            report(a, b);
-        }
+        list.sort_unstable();
+        let touches = |p: &&Pair| {
+            let (pa, pb) = (table.get(p.a), table.get(p.b));
+            passes(pa, pb)
+                && pa.enabled
+                && pb.enabled
+                // Not removed since the update.
+                && p.ranks == (self.entry(p.a).rank, self.entry(p.b).rank)
+        };
+        merge(self.near.iter().filter(touches), list.iter(), |p| report(p.a, p.b));
     }
 
-    /// In the order of the tree.
+    /// In the order of the trees.
     fn collide_with(
         &self,
         table: &ProxyTable,
@@ -153,10 +329,12 @@ impl BroadPhase for BvhSpace {
         for &id in &self.unbounded {
             consider(id);
         }
-        self.tree.query(&proxy.aabb, |id| consider(ProxyId(id)));
+        let around = Box32::around(&proxy.aabb);
+        self.still.query(&around, |id| consider(ProxyId(id)));
+        self.moving.query(&around, |id| consider(ProxyId(id)));
     }
 
-    /// In the order of the tree.
+    /// In the order of the trees.
     fn visit(&self, table: &ProxyTable, test: &dyn Fn(&Aabb) -> bool, report: &mut dyn FnMut(ProxyId)) {
         let mut consider = |id: ProxyId| {
             let member = table.get(id);
@@ -167,10 +345,8 @@ impl BroadPhase for BvhSpace {
         for &id in &self.unbounded {
             consider(id);
         }
-        self.tree.walk(test, |id| {
-            consider(ProxyId(id));
-            true
-        });
+        self.still.walk(|b| test(&b.aabb()), |id| consider(ProxyId(id)));
+        self.moving.walk(|b| test(&b.aabb()), |id| consider(ProxyId(id)));
     }
 
     fn members(&self) -> &Members {
@@ -181,6 +357,5 @@ impl BroadPhase for BvhSpace {
 /// Working memory of a search.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BvhScratch {
-    stack: Vec<(u32, u32)>,
-    pairs: Vec<(u64, u64, ProxyId, ProxyId)>,
+    pairs: Vec<Pair>,
 }

@@ -5,6 +5,8 @@
 //! the order of contacts decides what `Quick` computes.
 
 mod bvh;
+mod dynamic_tree;
+mod f32_box;
 mod hash;
 mod proxy;
 mod quadtree;
