@@ -31,7 +31,7 @@ pub mod filter;
 mod frame;
 mod geom;
 pub mod narrow;
-mod query;
+pub mod query;
 pub mod shape;
 pub mod space;
 
@@ -39,7 +39,9 @@ pub use colliders::{ColliderError, Colliders, GeomKey, Item, SpaceKey, SpaceKind
 pub use contact::{CollideOptions, Contacts, GeomContact};
 pub use frame::Frame;
 pub use geom::Geom;
-pub use query::{RayHit, point_depth};
+pub use query::{
+    ClosestPoint, Queries, RayHit, ShapeCastHit, ShapeRayHit, closest_point, point_depth, ray_cast,
+};
 pub use shape::{
     Capsule, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Plane, Ray, Shape, ShapeError, ShapeKind, Sphere,
     TriMesh,

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::filter::passes;
+use crate::space::Probe;
 use crate::{CollideOptions, GeomContact, narrow};
 
 impl Colliders {
@@ -124,15 +125,34 @@ impl Colliders {
         Ok(())
     }
 
-    /// Reports the enabled members of a space whose boxes pass `test`, in the order of the space.
-    pub(crate) fn members_passing(
+    /// Calls `found` with the enabled geoms in a space whose boxes pass `test`, spaces within it included.
+    pub(crate) fn visit_boxes(
         &self,
         space: SpaceKey,
         test: &dyn Fn(&Aabb) -> bool,
-        report: &mut dyn FnMut(Item),
+        found: &mut dyn FnMut(GeomKey, &Geom),
+    ) {
+        let Some(node) = self.space_node(space) else { return };
+        node.broad.get().visit(&self.table, test, &mut |id| match self.item(id) {
+            Item::Geom(key) => {
+                if let Some(geom) = self.geom(key) {
+                    found(key, geom);
+                }
+            }
+            Item::Space(inner) => self.visit_boxes(inner, test, found),
+        });
+    }
+
+    /// Reports the enabled members of a space whose boxes the probe meets within the limit, which `report` may lower.
+    pub(crate) fn seek(
+        &self,
+        space: SpaceKey,
+        probe: &Probe,
+        limit: &mut f64,
+        report: &mut dyn FnMut(Item, &mut f64),
     ) {
         if let Some(node) = self.space_node(space) {
-            node.broad.get().visit(&self.table, test, &mut |id| report(self.item(id)));
+            node.broad.get().seek(&self.table, probe, limit, &mut |id, limit| report(self.item(id), limit));
         }
     }
 

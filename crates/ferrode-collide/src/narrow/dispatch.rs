@@ -235,3 +235,14 @@ pub fn collide_frames(
     collider(a.0, a.1, b.0, b.1, &mut contacts);
     contacts.len()
 }
+
+/// Whether two shapes touch.
+pub fn touches(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> bool {
+    PAIRS[index(a.0.kind())][index(b.0.kind())].is_some_and(|collider| {
+        let mut found = Vec::new();
+        // Any contact would do, but boxes that are asked for any report contacts that are none.
+        let mut out = Contacts::new(&mut found, CollideOptions::new(1));
+        collider(a.0, a.1, b.0, b.1, &mut out);
+        !found.is_empty()
+    })
+}

@@ -3,8 +3,9 @@
 use super::convex::touch;
 use super::gjk::{Gap, gjk};
 use super::support::Body;
-use crate::{Frame, Plane, Shape};
-use ferrode_math::{Pose, Vec3};
+use crate::space::Probe;
+use crate::{Frame, Plane, Shape, TriMesh};
+use ferrode_math::{Aabb, Pose, Vec3};
 
 /// The nearest points of two shapes, or the deepest if they overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,32 +20,93 @@ pub struct Distance {
     pub normal: Vec3,
 }
 
-/// The distance of two shapes. `None` for pairs that have none: rays, and two planes.
+/// The distance of two shapes; a mesh is its surface. `None` for pairs that have none: rays, and two planes.
 pub fn distance(a: (&Shape, &Pose), b: (&Shape, &Pose)) -> Option<Distance> {
-    let (fa, fb) = (Frame::from(a.1), Frame::from(b.1));
-    match (a.0, b.0) {
+    distance_frames((a.0, &Frame::from(a.1)), (b.0, &Frame::from(b.1)))
+}
+
+/// As [`distance`], for callers who have the rotation matrices at hand.
+pub fn distance_frames(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> Option<Distance> {
+    let ((sa, fa), (sb, fb)) = (a, b);
+    match (sa, sb) {
         (Shape::Plane(_), Shape::Plane(_)) => None,
-        (Shape::Plane(p), shape) => {
-            let d = plane_distance(p, &Body::of(shape, &fb, Vec3::ZERO)?);
-            Some(Distance { a: d.b, b: d.a, normal: -d.normal, ..d })
+        (Shape::TriMesh(mesh), Shape::Plane(p)) => mesh_plane_distance(mesh, fa, p),
+        (Shape::Plane(_), _) => distance_frames(b, a).map(Distance::swapped),
+        (_, Shape::Plane(p)) => Some(plane_distance(p, &Body::of(sa, fa, Vec3::ZERO)?)),
+        (Shape::TriMesh(mesh), Shape::TriMesh(other)) => {
+            let mut best: Option<Distance> = None;
+            for i in 0..mesh.triangles().len() as u32 {
+                let corners = mesh.corners(i).map(|p| fa.point_to_world(p));
+                let origin = corners[0];
+                let body = Body::triangle(corners.map(|p| p - origin));
+                best = body_mesh_distance(&body, origin, other, fb, best);
+            }
+            best
         }
-        (shape, Shape::Plane(p)) => Some(plane_distance(p, &Body::of(shape, &fa, Vec3::ZERO)?)),
-        (sa, sb) => {
+        (Shape::TriMesh(_), _) => distance_frames(b, a).map(Distance::swapped),
+        (_, Shape::TriMesh(mesh)) => {
             let origin = fa.position;
-            let (ba, bb) = (Body::of(sa, &fa, origin)?, Body::of(sb, &fb, origin)?);
+            body_mesh_distance(&Body::of(sa, fa, origin)?, origin, mesh, fb, None)
+        }
+        _ => {
+            let origin = fa.position;
+            let (ba, bb) = (Body::of(sa, fa, origin)?, Body::of(sb, fb, origin)?);
             Some(body_distance(&ba, &bb, origin))
         }
     }
 }
 
-fn plane_distance(plane: &Plane, body: &Body<'_>) -> Distance {
+impl Distance {
+    /// The same seen from the other shape.
+    #[must_use]
+    pub fn swapped(self) -> Self {
+        Self { a: self.b, b: self.a, normal: -self.normal, ..self }
+    }
+}
+
+/// The lowest vertex.
+fn mesh_plane_distance(mesh: &TriMesh, frame: &Frame, plane: &Plane) -> Option<Distance> {
+    let n = frame.vector_to_local(plane.normal());
+    let lowest = mesh.vertices().iter().min_by(|p, q| p.dot(n).total_cmp(&q.dot(n)))?;
+    let a = frame.point_to_world(*lowest);
+    let depth = plane.depth(a);
+    Some(Distance { distance: -depth, a, b: a + plane.normal() * depth, normal: plane.normal() })
+}
+
+/// The least distance to a triangle, or `best` if that is less. The body is relative to `origin`.
+fn body_mesh_distance(
+    body: &Body<'_>,
+    origin: Vec3,
+    mesh: &TriMesh,
+    frame: &Frame,
+    mut best: Option<Distance>,
+) -> Option<Distance> {
+    // Bodies that overlap are at no distance, but some overlap more.
+    let mut limit = best.map_or(f64::INFINITY, |b| b.distance.max(0.0));
+    // In the mesh's coordinates: the box around the ball around the body.
+    let reach = Vec3::splat(body.reach());
+    let center = frame.point_to_local(body.center + origin);
+    // Boxes are compared with the body's box, which is no nearer than the body.
+    let probe = Probe::near(&Aabb::new(center - reach, center + reach));
+    mesh.tree().seek(&probe, &mut limit, |i, limit| {
+        let triangle = Body::triangle(mesh.corners(i).map(|p| frame.point_to_world(p) - origin));
+        let d = body_distance(body, &triangle, origin);
+        if best.is_none_or(|b| d.distance < b.distance) {
+            *limit = d.distance.max(0.0);
+            best = Some(d);
+        }
+    });
+    best
+}
+
+pub(super) fn plane_distance(plane: &Plane, body: &Body<'_>) -> Distance {
     let n = plane.normal();
     let a = body.support(-n) - n * body.margin;
     let depth = plane.depth(a);
     Distance { distance: -depth, a, b: a + n * depth, normal: n }
 }
 
-fn body_distance(a: &Body<'_>, b: &Body<'_>, origin: Vec3) -> Distance {
+pub(super) fn body_distance(a: &Body<'_>, b: &Body<'_>, origin: Vec3) -> Distance {
     if let Some(t) = touch(a, b) {
         return Distance { distance: -t.depth, a: t.a + origin, b: t.b + origin, normal: t.normal };
     }

@@ -1,5 +1,5 @@
 use super::triangle::Facet;
-use crate::space::tree::segment_meets;
+use crate::space::Probe;
 use crate::{Contacts, Frame, GeomContact, Ray, TriMesh};
 use ferrode_math::Vec3;
 
@@ -10,26 +10,25 @@ use ferrode_math::Vec3;
 pub fn ray_trimesh(ray: &Ray, fr: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
     let (o, u) = ray.line(fr);
     let (start, direction) = (fm.point_to_local(o), fm.vector_to_local(u));
-    let span = direction * ray.length();
-    let inverse = Vec3::new(1.0 / span.x, 1.0 / span.y, 1.0 / span.z);
+    let nearest = ray.first_contact || ray.closest_hit;
+    let mut limit = ray.length();
     {
         let mut all = out.all();
-        mesh.tree().walk(
-            |aabb| segment_meets(aabb, start, inverse),
-            |i| {
-                if let Some(facet) = mesh.facet(i)
-                    && !(ray.backface_cull && facet.normal.dot(direction) > 0.0)
-                    && let Some(alpha) = ray_facet(start, direction, ray.length(), &facet)
-                {
-                    let mut c = GeomContact::new(o + u * alpha, fm.vector_to_world(facet.normal), alpha);
-                    c.side2 = facet.index;
-                    all.push_contact(c);
+        mesh.tree().seek(&Probe::ray(start, direction), &mut limit, |i, limit| {
+            if let Some(facet) = mesh.facet(i)
+                && !(ray.backface_cull && facet.normal.dot(direction) > 0.0)
+                && let Some(alpha) = ray_facet(start, direction, *limit, &facet)
+            {
+                if nearest {
+                    *limit = alpha;
                 }
-                true
-            },
-        );
+                let mut c = GeomContact::new(o + u * alpha, fm.vector_to_world(facet.normal), alpha);
+                c.side2 = facet.index;
+                all.push_contact(c);
+            }
+        });
     }
-    let wanted = if ray.first_contact || ray.closest_hit { 1 } else { out.capacity() };
+    let wanted = if nearest { 1 } else { out.capacity() };
     out.added().sort_unstable_by(|a, b| a.point.depth.total_cmp(&b.point.depth).then(a.side2.cmp(&b.side2)));
     let found = out.len();
     out.truncate(found.min(wanted));

@@ -1,6 +1,6 @@
 use super::dynamic_tree::DynamicTree;
 use super::f32_box::Box32;
-use super::{BroadPhase, Members, Proxy, ProxyId, ProxyTable, Scratch};
+use super::{BroadPhase, Members, Probe, Proxy, ProxyId, ProxyTable, Scratch};
 use crate::filter::passes;
 use ferrode_math::{Aabb, Vec3};
 
@@ -347,6 +347,27 @@ impl BroadPhase for BvhSpace {
         }
         self.still.walk(|b| test(&b.aabb()), |id| consider(ProxyId(id)));
         self.moving.walk(|b| test(&b.aabb()), |id| consider(ProxyId(id)));
+    }
+
+    fn seek(
+        &self,
+        table: &ProxyTable,
+        probe: &Probe,
+        limit: &mut f64,
+        report: &mut dyn FnMut(ProxyId, &mut f64),
+    ) {
+        // Leaves are larger than geoms: look at the geom's own box before its shape is asked.
+        let mut consider = |id: ProxyId, limit: &mut f64| {
+            let member = table.get(id);
+            if member.enabled && probe.enter_aabb(&member.aabb, *limit).is_some() {
+                report(id, limit);
+            }
+        };
+        for &id in &self.unbounded {
+            consider(id, limit);
+        }
+        self.still.seek(probe, limit, |id, limit| consider(ProxyId(id), limit));
+        self.moving.seek(probe, limit, |id, limit| consider(ProxyId(id), limit));
     }
 
     fn members(&self) -> &Members {

@@ -1,6 +1,7 @@
 //! A binary tree of boxes whose leaves come, go and move.
 
 use super::f32_box::{Box32, Pending};
+use super::probe::{Probe, nearer};
 
 const NONE: u32 = u32::MAX;
 
@@ -323,16 +324,11 @@ impl DynamicTree {
         self.walk(|b| b.overlaps(bounds), found);
     }
 
-    /// Calls `found` with the payload of each leaf that `enter` says is entered before the limit, nearer children first.
-    /// `found` may lower the limit.
-    #[inline(always)]
-    pub fn walk_nearest(
-        &self,
-        limit: &mut f64,
-        enter: impl Fn(&Box32, f64) -> Option<f64>,
-        mut found: impl FnMut(u32, &mut f64),
-    ) {
-        if self.count == 0 || enter(&self.nodes[0].bounds(), *limit).is_none() {
+    /// Calls `found` with the payload of each leaf that the probe meets within the limit, nearer ones first as far as
+    /// the boxes tell. `found` may lower the limit.
+    #[inline]
+    pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
+        if self.count == 0 || probe.enter(&self.nodes[0].bounds(), *limit).is_none() {
             return;
         }
         let mut pending: Pending<(u32, f32)> = Pending::new();
@@ -345,17 +341,8 @@ impl DynamicTree {
             } else {
                 let c = node.child;
                 if let [left, right] = &self.nodes[c as usize..c as usize + 2] {
-                    let (a, b) = (enter(&left.bounds(), *limit), enter(&right.bounds(), *limit));
-                    next = match (a, b) {
-                        (Some(a), Some(b)) => {
-                            let (near, far, at) = if b < a { (c + 1, c, a) } else { (c, c + 1, b) };
-                            pending.push((far, super::f32_box::down(at)));
-                            Some(near)
-                        }
-                        (Some(_), None) => Some(c),
-                        (None, Some(_)) => Some(c + 1),
-                        (None, None) => None,
-                    };
+                    let (a, b) = (probe.enter(&left.bounds(), *limit), probe.enter(&right.bounds(), *limit));
+                    next = nearer(c, a, b, &mut pending);
                 }
             }
             while next.is_none() {

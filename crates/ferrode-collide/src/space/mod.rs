@@ -8,6 +8,7 @@ mod bvh;
 mod dynamic_tree;
 mod f32_box;
 mod hash;
+mod probe;
 mod proxy;
 mod quadtree;
 mod simple;
@@ -18,6 +19,7 @@ use ferrode_math::Aabb;
 
 pub use bvh::BvhSpace;
 pub use hash::HashSpace;
+pub use probe::Probe;
 pub use proxy::{Members, Proxy, ProxyId, ProxyTable};
 pub use quadtree::QuadtreeSpace;
 pub use simple::SimpleSpace;
@@ -55,6 +57,22 @@ pub trait BroadPhase {
             let member = table.get(id);
             if member.enabled && test(&member.aabb) {
                 report(id);
+            }
+        }
+    }
+    /// Reports every enabled member whose box the probe meets within the limit, nearer ones first as far as the
+    /// structure tells. `report` may lower the limit.
+    fn seek(
+        &self,
+        table: &ProxyTable,
+        probe: &Probe,
+        limit: &mut f64,
+        report: &mut dyn FnMut(ProxyId, &mut f64),
+    ) {
+        for id in self.members().iter(table) {
+            let member = table.get(id);
+            if member.enabled && probe.enter_aabb(&member.aabb, *limit).is_some() {
+                report(id, limit);
             }
         }
     }

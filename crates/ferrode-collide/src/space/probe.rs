@@ -1,0 +1,128 @@
+//! What searches of trees look for: boxes that a ray, a moving box or a growing ball meets.
+
+use super::f32_box::{Box32, Pending, down};
+use ferrode_math::{Aabb, Vec3};
+
+/// More than the rounding of a difference, a reciprocal and a product.
+const SLACK: f64 = 8.0 * f64::EPSILON;
+
+/// Something that meets boxes sooner or later. Where it meets them is measured along the ray or path, in its lengths, or
+/// from the box, in metres.
+#[derive(Clone, Copy, Debug)]
+pub struct Probe {
+    kind: Kind,
+    origin: [f64; 3],
+    /// Of the direction.
+    inverse: [f64; 3],
+    half: [f64; 3],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Ray,
+    Sweep,
+    Near,
+}
+
+impl Probe {
+    /// A ray. The direction need not be a unit vector.
+    pub fn ray(origin: Vec3, direction: Vec3) -> Self {
+        Self {
+            kind: Kind::Ray,
+            origin: origin.to_array(),
+            inverse: direction.to_array().map(|x| 1.0 / x),
+            half: [0.0; 3],
+        }
+    }
+
+    /// A bounded box that moves along `path`.
+    pub fn sweep(aabb: &Aabb, path: Vec3) -> Self {
+        let half = aabb.extent() * 0.5;
+        // Against the rounding of centre and half.
+        let slack = 4.0 * f64::EPSILON * aabb.min.abs_max().max(aabb.max.abs_max());
+        Self {
+            kind: Kind::Sweep,
+            half: (half + Vec3::splat(slack)).to_array(),
+            ..Self::ray(aabb.center(), path)
+        }
+    }
+
+    /// What is near a bounded box: met at its distance.
+    pub fn near(aabb: &Aabb) -> Self {
+        Self { kind: Kind::Near, ..Self::sweep(aabb, Vec3::ZERO) }
+    }
+
+    /// Where the box is met, not before zero; `None` if it is not or beyond `limit`. Errs on the side of meeting.
+    #[inline(always)]
+    pub fn enter_bounds(&self, min: [f64; 3], max: [f64; 3], limit: f64) -> Option<f64> {
+        match self.kind {
+            Kind::Ray => self.cross(min, max, limit),
+            Kind::Sweep => {
+                let (mut min, mut max) = (min, max);
+                for i in 0..3 {
+                    min[i] -= self.half[i];
+                    max[i] += self.half[i];
+                }
+                self.cross(min, max, limit)
+            }
+            Kind::Near => {
+                let mut square = 0.0;
+                for i in 0..3 {
+                    let (lo, hi) = (self.origin[i] - self.half[i], self.origin[i] + self.half[i]);
+                    let gap = (min[i] - hi).max(lo - max[i]).max(0.0);
+                    square += gap * gap;
+                }
+                let distance = square.sqrt() * (1.0 - SLACK);
+                (distance <= limit).then_some(distance)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn cross(&self, min: [f64; 3], max: [f64; 3], limit: f64) -> Option<f64> {
+        let (mut lo, mut hi) = (0.0f64, limit);
+        for i in 0..3 {
+            let (o, inverse) = (self.origin[i], self.inverse[i]);
+            if inverse.is_finite() {
+                let (s, t) = ((min[i] - o) * inverse, (max[i] - o) * inverse);
+                let (s, t) = if inverse < 0.0 { (t, s) } else { (s, t) };
+                lo = if s > lo { s } else { lo };
+                hi = if t < hi { t } else { hi };
+            } else if o < min[i] || o > max[i] {
+                return None;
+            }
+        }
+        (lo <= hi + SLACK * (lo.abs() + hi.abs())).then_some(lo)
+    }
+
+    /// As [`enter_bounds`](Self::enter_bounds).
+    #[inline]
+    pub fn enter_aabb(&self, b: &Aabb, limit: f64) -> Option<f64> {
+        self.enter_bounds(b.min.to_array(), b.max.to_array(), limit)
+    }
+
+    #[inline(always)]
+    pub(crate) fn enter(&self, b: &Box32, limit: f64) -> Option<f64> {
+        self.enter_bounds(b.min.map(f64::from), b.max.map(f64::from), limit)
+    }
+}
+
+/// Of the children `c` and `c + 1`, which are met at `a` and `b`: the one to go on with; the other has to wait.
+#[inline(always)]
+pub(crate) fn nearer(
+    c: u32,
+    a: Option<f64>,
+    b: Option<f64>,
+    pending: &mut Pending<(u32, f32)>,
+) -> Option<u32> {
+    match (a, b) {
+        (Some(a), Some(b)) => {
+            let (near, far, at) = if b < a { (c + 1, c, a) } else { (c, c + 1, b) };
+            pending.push((far, down(at)));
+            Some(near)
+        }
+        (Some(_), None) => Some(c),
+        (None, Some(_)) => Some(c + 1),
+        (None, None) => None,
+    }
+}
