@@ -743,3 +743,22 @@ fn joints_with_two_axes_stop_on_each() {
         }
     }
 }
+
+#[test]
+fn the_quick_stepper_finds_the_same_springs_dampers_and_friction() {
+    for (kind, axis) in KINDS {
+        let dynamics = "<dynamics><spring_stiffness>40</spring_stiffness><damping>2</damping></dynamics>";
+        let run = |stepper: ferrode::Stepper| {
+            let mut world = on_axis(kind, axis, dynamics);
+            world.world.stepper = stepper;
+            push(&mut world, kind, 1.0);
+            steps(&mut world, 50);
+            (place(&world), speed(&world))
+        };
+        let (exact, quick) = (run(ferrode::Stepper::Direct), run(ferrode::Stepper::Quick));
+        assert!(
+            (exact.0 - quick.0).abs() < 1e-6 && (exact.1 - quick.1).abs() < 1e-5,
+            "{kind}: {exact:?} {quick:?}"
+        );
+    }
+}

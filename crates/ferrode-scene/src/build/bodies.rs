@@ -2,6 +2,7 @@
 
 use ferrode::{BodyKey, GeomKey, Mass, World};
 
+use super::solids::FromFiles;
 use super::{refused, shapes};
 use crate::description::{Link, LinkId, Scene};
 use crate::error::{Notes, Result};
@@ -21,6 +22,7 @@ pub(super) fn add_links(
     notes: &mut Notes,
 ) -> Result<Vec<BuiltLink>> {
     let jointed = models_with_joints(scene);
+    let mut making = shapes::Making { step, files: FromFiles::default() };
     let mut built = Vec::with_capacity(scene.links.len());
     for (index, link) in scene.links.iter().enumerate() {
         let body = if scene.is_static(LinkId(index)) {
@@ -38,7 +40,7 @@ pub(super) fn add_links(
             }
             Some(body)
         };
-        let geoms = shapes::add_geoms(world, scene, link, body, step, notes)?;
+        let geoms = shapes::add_geoms(world, scene, link, body, &mut making, notes)?;
         built.push(BuiltLink { body, geoms });
     }
     Ok(built)

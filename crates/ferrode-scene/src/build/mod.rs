@@ -79,7 +79,8 @@ pub struct BuildOptions {
 /// A world in which everything is found by its name in the file.
 #[derive(Clone, Debug)]
 pub struct NamedWorld {
-    /// The world. It may be changed freely, but what it holds for the scene must stay in it.
+    /// The world. It may be changed freely, but what it holds for the scene must stay in it, and
+    /// [`NamedWorld::step`] is to step it: springs, couplings and turns are kept up there.
     pub world: World,
     /// The description it was built from.
     pub scene: Scene,

@@ -3,9 +3,17 @@
 use ferrode::{BodyKey, GeomKey, Material, Plane, Pose, World};
 
 use super::bodies::BuiltLink;
-use super::{refused, softness, solids};
+use super::solids::FromFiles;
+use super::{refused, softness};
 use crate::description::{Body, Collision, Geometry, Link, LinkId, ModelId, Scene, Surface};
 use crate::error::{Notes, Result};
+
+/// What all collisions of a world are made with.
+pub(super) struct Making {
+    /// The step size that soft materials are for.
+    pub step: f64,
+    pub files: FromFiles,
+}
 
 /// Adds the collisions of a link, to its body or to the static world.
 pub(super) fn add_geoms(
@@ -13,14 +21,14 @@ pub(super) fn add_geoms(
     scene: &Scene,
     link: &Link,
     body: Option<BodyKey>,
-    step: f64,
+    making: &mut Making,
     notes: &mut Notes,
 ) -> Result<Vec<GeomKey>> {
     let mut geoms = Vec::with_capacity(link.collisions.len());
     for collision in &link.collisions {
         let refused = |error: ferrode::Error| refused(&collision.origin, "the collision", error);
         let in_world = link.pose * collision.pose;
-        let mut material = material(&collision.surface, step);
+        let mut material = material(&collision.surface, making.step);
         let key = if let (Geometry::Plane { normal }, None) = (&collision.geometry, body) {
             // A plane has no pose of its own: it is written in the world, and so is its friction direction.
             let normal = in_world.transform_vector(*normal);
@@ -29,7 +37,7 @@ pub(super) fn add_geoms(
             material.friction_direction = material.friction_direction.map(|d| in_world.transform_vector(d));
             world.add_static(plane, Pose::IDENTITY).map_err(refused)?
         } else {
-            let Some(shape) = solids::shape(collision, notes).map_err(refused)? else { continue };
+            let Some(shape) = making.files.shape(collision, notes).map_err(refused)? else { continue };
             match body {
                 Some(body) => {
                     let offset = link.inertial.pose.inverse() * collision.pose;

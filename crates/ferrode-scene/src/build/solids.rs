@@ -9,7 +9,7 @@ use crate::error::Notes;
 /// The shape of a collision; `None`, with a warning, if the engine has none.
 ///
 /// Meshes, terrain and outlines that are not convex become surfaces of triangles.
-pub(super) fn shape(collision: &Collision, notes: &mut Notes) -> Result<Option<Shape>, Error> {
+fn shape(collision: &Collision, notes: &mut Notes) -> Result<Option<Shape>, Error> {
     Ok(Some(match &collision.geometry {
         Geometry::Cuboid { size } => Cuboid::new(*size)?.into(),
         Geometry::Sphere { radius } => Sphere::new(*radius)?.into(),
@@ -42,6 +42,25 @@ pub(super) fn shape(collision: &Collision, notes: &mut Notes) -> Result<Option<S
             return Ok(None);
         }
     }))
+}
+
+/// Shapes made from files: a wheel's mesh is read once for all its wheels.
+#[derive(Debug, Default)]
+pub(super) struct FromFiles(Vec<(Geometry, Shape)>);
+
+impl FromFiles {
+    /// As [`shape`], but remembers what comes from files.
+    pub(super) fn shape(&mut self, collision: &Collision, notes: &mut Notes) -> Result<Option<Shape>, Error> {
+        if !matches!(collision.geometry, Geometry::Mesh(_) | Geometry::Heightmap { .. }) {
+            return shape(collision, notes);
+        }
+        if let Some((_, known)) = self.0.iter().find(|(geometry, _)| *geometry == collision.geometry) {
+            return Ok(Some(known.clone()));
+        }
+        let made = shape(collision, notes)?;
+        self.0.extend(made.clone().map(|made| (collision.geometry.clone(), made)));
+        Ok(made)
+    }
 }
 
 fn leave_out(collision: &Collision, why: &str, notes: &mut Notes) {
