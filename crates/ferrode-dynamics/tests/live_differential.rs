@@ -7,9 +7,10 @@
 
 mod oracle;
 
-use oracle::scene::Scene;
+use oracle::scene::{Method, Scene};
 use oracle::{Line, Record};
 
+const METHODS: [Method; 3] = [Method::Direct, Method::Sparse, Method::Quick];
 const SCENES: u32 = 200;
 const STEPS: usize = 20;
 const TOLERANCE: f64 = 1e-6;
@@ -18,7 +19,7 @@ const TOLERANCE: f64 = 1e-6;
 #[derive(Debug)]
 struct Outcome {
     seed: u32,
-    quick: bool,
+    method: Method,
     redundant: bool,
     types: String,
     /// Largest difference of any body after each step.
@@ -50,7 +51,7 @@ impl Outcome {
 
     /// Rounding decides the forces of redundant constraints, and then friction. `Quick` has no such freedom.
     fn must_agree(&self) -> bool {
-        self.quick || !self.redundant
+        self.method == Method::Quick || !self.redundant
     }
 
     fn agrees(&self) -> bool {
@@ -63,15 +64,15 @@ fn runs_away(r: &Record) -> bool {
     r.what == "body" && r.numbers[8..].iter().any(|v| v.abs() > 1e3)
 }
 
-fn compare(scene: &Scene, quick: bool, verbose: bool) -> Option<Outcome> {
-    let (script, ours) = scene.run(STEPS, quick).unwrap_or_else(|e| panic!("scene {}: {e}", scene.seed));
+fn compare(scene: &Scene, method: Method, verbose: bool) -> Option<Outcome> {
+    let (script, ours) = scene.run(STEPS, method).unwrap_or_else(|e| panic!("scene {}: {e}", scene.seed));
     if verbose {
-        keep(&script, scene.seed, quick);
+        keep(&script, scene.seed, method);
     }
     let theirs = oracle::run(&script)?;
     let mut outcome = Outcome {
         seed: scene.seed,
-        quick,
+        method,
         redundant: scene.redundant,
         types: scene.types.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
         bodies: Vec::new(),
@@ -123,9 +124,8 @@ fn print_record(step: usize, engine: &str, r: &Record) {
     println!("step {step} {engine} {} {}: {}", r.what, r.index, numbers.join(" "));
 }
 
-fn keep(script: &[Line], seed: u32, quick: bool) {
-    let stepper = if quick { "quick" } else { "direct" };
-    let path = format!("{}/scene-{seed}-{stepper}.txt", env!("CARGO_TARGET_TMPDIR"));
+fn keep(script: &[Line], seed: u32, method: Method) {
+    let path = format!("{}/scene-{seed}-{method:?}.txt", env!("CARGO_TARGET_TMPDIR"));
     let text: String = script.iter().map(|line| format!("{line}\n")).collect();
     match std::fs::write(&path, text) {
         Ok(()) => println!("script of scene {seed}: {path}"),
@@ -133,15 +133,15 @@ fn keep(script: &[Line], seed: u32, quick: bool) {
     }
 }
 
-fn print_class(quick: bool, redundant: bool, outcomes: &[Outcome]) {
-    let class: Vec<_> = outcomes.iter().filter(|o| o.quick == quick && o.redundant == redundant).collect();
+fn print_class(method: Method, redundant: bool, outcomes: &[Outcome]) {
+    let class: Vec<_> = outcomes.iter().filter(|o| o.method == method && o.redundant == redundant).collect();
     let mut last: Vec<f64> = class.iter().map(|o| o.last()).collect();
     last.sort_by(f64::total_cmp);
     let worst = |f: fn(&Outcome) -> f64| class.iter().map(|o| f(o)).fold(0.0, f64::max);
     println!(
         "{:6} {:11}: {:3} scenes; relative difference after {STEPS} steps: median {:.1e}, worst {:.1e}; worst on the way \
          of what joints measure {:.1e}, of joint forces {:.1e}",
-        if quick { "Quick" } else { "Direct" },
+        format!("{method:?}"),
         if redundant { "redundant" } else { "independent" },
         class.len(),
         last.get(last.len() / 2).copied().unwrap_or(0.0),
@@ -159,13 +159,14 @@ fn random_scenes_move_as_in_libode() {
     let mut outcomes = Vec::new();
     for seed in seeds {
         let scene = Scene::random(seed);
-        for quick in [false, true] {
-            let Some(outcome) = compare(&scene, quick, one.is_some()) else { return };
+        for method in METHODS {
+            let Some(outcome) = compare(&scene, method, one.is_some()) else { return };
             outcomes.push(outcome);
         }
     }
-    for (quick, redundant) in [(false, false), (false, true), (true, false), (true, true)] {
-        print_class(quick, redundant, &outcomes);
+    for method in METHODS {
+        print_class(method, false, &outcomes);
+        print_class(method, true, &outcomes);
     }
     let ended = |end: End| outcomes.iter().filter(|o| o.end == end).count();
     println!(
@@ -180,9 +181,9 @@ fn random_scenes_move_as_in_libode() {
     for o in &different {
         let first = o.bodies.iter().position(|d| *d > 1e-9);
         println!(
-            "scene {} {}: {:.1e} at the end, above 1e-9 from step {first:?}, measured {:.1e}, seeds {}; {}",
+            "scene {} {:?}: {:.1e} at the end, above 1e-9 from step {first:?}, measured {:.1e}, seeds {}; {}",
             o.seed,
-            if o.quick { "Quick" } else { "Direct" },
+            o.method,
             o.last(),
             o.measures,
             if o.seeds_agree { "agree" } else { "DIFFER" },

@@ -4,9 +4,20 @@ mod joints;
 
 use super::engine::Engine;
 use super::{Line, Record};
-use ferrode_dynamics::{Axis, Error, JointType, Mass, SurfaceMode};
+use ferrode_dynamics::{Axis, DirectSettings, Error, JointType, Mass, SurfaceMode};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Quat, Vec3};
+
+/// How this crate finds the forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// `Direct` with its defaults: small islands by ODE's method.
+    Direct,
+    /// `Direct` with block pivoting on the sparse factorisation even for the smallest island.
+    Sparse,
+    /// `Quick`.
+    Quick,
+}
 
 /// A scene: how it is made, and what happens before each of its steps.
 pub struct Scene {
@@ -406,14 +417,17 @@ impl Scene {
     }
 
     /// Runs the scene with this crate. The script that it wrote on the way, contacts included, repeats it elsewhere.
-    pub fn run(&self, steps: usize, quick: bool) -> Result<(Vec<Line>, Vec<Record>), Error> {
+    pub fn run(&self, steps: usize, method: Method) -> Result<(Vec<Line>, Vec<Record>), Error> {
         let mut engine = Engine::default();
+        if method == Method::Sparse {
+            engine.world.set_direct(DirectSettings { dense_rows: 0, ..*engine.world.direct() });
+        }
         let mut script = self.setup.clone();
         let mut records = engine.run(&script)?;
         for _ in 0..steps {
             let mut lines = self.each_step.clone();
             lines.extend(self.contacts(&engine));
-            lines.push(Line::new("step", 0, &[f64::from(u8::from(quick)), self.h]));
+            lines.push(Line::new("step", 0, &[f64::from(u8::from(method == Method::Quick)), self.h]));
             lines.push(Line::new("print", 0, &[]));
             records.extend(engine.run(&lines)?);
             script.extend(lines);
