@@ -1,7 +1,7 @@
 //! What a scene needs of an engine, and this project's own behind it.
 
 use ferrode_dynamics::{
-    Ball, BodyKey, Contact, GroupKey, Hinge, JointKey, Mass, Param, Stepper, Surface, World,
+    Ball, BodyKey, Contact, GroupKey, Hinge, JointKey, Mass, Param, StepReport, Stepper, Surface, World,
 };
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{ContactPoint, Quat, Vec3};
@@ -37,6 +37,9 @@ pub trait Engine {
 
     /// An empty world with this gravity, the random generator at seed 0.
     fn new(gravity: Vec3) -> Self;
+    /// Sets the constraint force mixing of joints and contacts.
+    #[allow(dead_code, reason = "not every program sets it")]
+    fn set_cfm(&mut self, cfm: f64);
     /// Adds a box; its number.
     fn add_box(&mut self, mass: f64, sides: Vec3, position: Vec3, rotation: Quat) -> usize;
     /// Adds a ball joint.
@@ -68,6 +71,9 @@ pub struct Ferrode {
     joints: Vec<JointKey>,
     /// Rows in the last step.
     pub rows: usize,
+    /// What the last step told of itself.
+    #[allow(dead_code, reason = "not every program prints it")]
+    pub report: StepReport,
 }
 
 const VALID: &str = "the scenes use valid numbers and living keys only";
@@ -86,7 +92,18 @@ impl Engine for Ferrode {
         world.set_gravity(gravity).expect(VALID);
         world.set_random(OdeRandom::new(0));
         let contacts = world.create_group();
-        Self { world, contacts, bodies: Vec::new(), joints: Vec::new(), rows: 0 }
+        Self {
+            world,
+            contacts,
+            bodies: Vec::new(),
+            joints: Vec::new(),
+            rows: 0,
+            report: StepReport::default(),
+        }
+    }
+
+    fn set_cfm(&mut self, cfm: f64) {
+        self.world.set_cfm(cfm).expect(VALID);
     }
 
     fn add_box(&mut self, mass: f64, sides: Vec3, position: Vec3, rotation: Quat) -> usize {
@@ -140,6 +157,7 @@ impl Engine for Ferrode {
         };
         let report = self.world.step(stepper, h).expect(VALID);
         self.rows = report.rows;
+        self.report = report;
         self.world.empty_group(self.contacts).expect(VALID);
     }
 

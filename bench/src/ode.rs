@@ -54,6 +54,8 @@ unsafe extern "C" {
     fn dWorldCreate() -> Id;
     fn dWorldDestroy(world: Id);
     fn dWorldSetGravity(world: Id, x: f64, y: f64, z: f64);
+    #[allow(dead_code, reason = "not every program sets it")]
+    fn dWorldSetCFM(world: Id, cfm: f64);
     fn dWorldStep(world: Id, h: f64) -> c_int;
     fn dWorldQuickStep(world: Id, h: f64) -> c_int;
     fn dBodyCreate(world: Id) -> Id;
@@ -141,6 +143,11 @@ impl Engine for Ode {
             let contacts = dJointGroupCreate(0);
             Self { world, contacts, bodies: Vec::new(), balls: Vec::new(), hinges: Vec::new() }
         }
+    }
+
+    fn set_cfm(&mut self, cfm: f64) {
+        // SAFETY: the world lives.
+        unsafe { dWorldSetCFM(self.world, cfm) }
     }
 
     fn add_box(&mut self, mass: f64, sides: Vec3, position: Vec3, rotation: Quat) -> usize {

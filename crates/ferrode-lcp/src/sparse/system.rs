@@ -45,6 +45,8 @@ pub(crate) struct System {
     error: Vec<f64>,
     pub dy: Vec<Six>,
     pub factor: Factor,
+    /// Per row what it weighs in `H`: `1 / S`, or 0 for a row whose force is given.
+    pub weight: Vec<f64>,
     /// Whether some row's CFM was raised.
     pub raised: bool,
 }
@@ -69,6 +71,7 @@ impl System {
             v.clear();
         }
         self.raised = false;
+        self.weight.clear();
         for (row, sigma) in jacobian.iter().zip(sigma) {
             let diagonal = kernel6::dot(&row[0], &row[0]) + kernel6::dot(&row[1], &row[1]) + sigma;
             let least = LEAST_SIGMA * diagonal;
@@ -76,6 +79,7 @@ impl System {
             self.raised |= used != *sigma;
             self.diagonal.push(diagonal);
             self.used_sigma.push(used);
+            self.weight.push(0.0);
             self.inverse_sigma.push(if used > 0.0 { 1.0 / used } else { 0.0 });
         }
         self.factor.reset(shape);
@@ -89,6 +93,40 @@ impl System {
         state: &[RowState],
         shape: &Symbolic,
     ) {
+        for (row, state) in state.iter().enumerate() {
+            self.weight[row] = if *state == RowState::Free { self.inverse_sigma[row] } else { 0.0 };
+        }
+        self.add_and_factorise(blocks, jacobian, shape);
+    }
+
+    /// Factors everything anew with the weights as they stand in `weight`.
+    pub fn factorise_weighted(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
+        self.factor.reset(shape);
+        self.add_and_factorise(blocks, jacobian, shape);
+    }
+
+    /// Solves `(J J^T + 1 / weight) x = rho` for the rows that have a weight, one time and without refinement; 0 for the others.
+    pub fn solve_weighted(
+        &mut self,
+        blocks: &[RowBlock],
+        jacobian: &[ScaledRow],
+        shape: &Symbolic,
+        rho: &[f64],
+        x: &mut [f64],
+    ) {
+        for (x, (rho, weight)) in x.iter_mut().zip(rho.iter().zip(&self.weight)) {
+            *x = rho * weight;
+        }
+        self.dy.fill([0.0; 6]);
+        multiply_transposed(blocks, jacobian, shape, x, &mut self.dy);
+        self.factor.solve(shape, &mut self.dy);
+        multiply(blocks, jacobian, shape, &self.dy, &mut self.error);
+        for (row, x) in x.iter_mut().enumerate() {
+            *x = (rho[row] - self.error[row]) * self.weight[row];
+        }
+    }
+
+    fn add_and_factorise(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
         self.factor.clear_stale(shape);
         for (block, (columns, pair)) in blocks.iter().zip(shape.columns.iter().zip(&shape.pair)) {
             let stale = columns.map(|c| self.factor.is_stale(c));
@@ -100,11 +138,11 @@ impl System {
             // The pair's block stands in the column of the body that is eliminated first.
             let (low, high) = if columns[0] < columns[1] { (0, 1) } else { (1, 0) };
             for row in block.range() {
-                if state[row] != RowState::Free {
+                let (s, j) = (self.weight[row], &jacobian[row]);
+                if s == 0.0 {
                     continue;
                 }
                 any = true;
-                let (s, j) = (self.inverse_sigma[row], &jacobian[row]);
                 if stale[0] {
                     kernel6::add_outer(&mut a, s, &j[0], &j[0]);
                 }
@@ -254,19 +292,30 @@ impl System {
     /// Sets `y` to `J^T lambda` and `jy` to `J y`, from the forces alone.
     pub fn accelerations(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
         self.y.fill([0.0; 6]);
-        for (block, columns) in blocks.iter().zip(&shape.columns) {
-            let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
-            for row in block.range() {
-                kernel6::add_scaled(&mut a, self.lambda[row], &jacobian[row][0]);
-                kernel6::add_scaled(&mut b, self.lambda[row], &jacobian[row][1]);
-            }
-            for (c, sum) in [(columns[0], &a), (columns[1], &b)] {
-                if c != NONE {
-                    kernel6::add_scaled(&mut self.y[c as usize], 1.0, sum);
-                }
+        multiply_transposed(blocks, jacobian, shape, &self.lambda, &mut self.y);
+        self.product(blocks, jacobian, shape);
+    }
+}
+
+/// `out += J^T x`.
+fn multiply_transposed(
+    blocks: &[RowBlock],
+    jacobian: &[ScaledRow],
+    shape: &Symbolic,
+    x: &[f64],
+    out: &mut [Six],
+) {
+    for (block, columns) in blocks.iter().zip(&shape.columns) {
+        let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
+        for row in block.range() {
+            kernel6::add_scaled(&mut a, x[row], &jacobian[row][0]);
+            kernel6::add_scaled(&mut b, x[row], &jacobian[row][1]);
+        }
+        for (c, sum) in [(columns[0], &a), (columns[1], &b)] {
+            if c != NONE {
+                kernel6::add_scaled(&mut out[c as usize], 1.0, sum);
             }
         }
-        self.product(blocks, jacobian, shape);
     }
 }
 
