@@ -71,7 +71,7 @@ fn seconds(f: impl FnOnce()) -> f64 {
 
 const DT: f64 = 1.0 / 60.0;
 
-fn broad(count: usize, speed: f64, steps: usize) -> Result<(), Box<dyn Error>> {
+fn broad(count: usize, speed: f64, steps: usize) -> Result<String, Box<dyn Error>> {
     let (mut bodies, side) = scene::crowd(count, 4.0, speed);
     let ours = [("ferrode bvh", SpaceKind::Bvh), ("ferrode hash", SpaceKind::HASH)];
     let theirs = [("libode sap", ode::Kind::Sap), ("libode hash", ode::Kind::Hash), ("libode quadtree", ode::Kind::Quadtree)];
@@ -116,23 +116,107 @@ fn broad(count: usize, speed: f64, steps: usize) -> Result<(), Box<dyn Error>> {
     }
     counts[n - 2] = r64.contacts();
     counts[n - 1] = r32.contacts();
-    println!("{count} geoms, every second moves at up to {speed} m/s, dt 1/60 s; milliseconds");
-    println!("{:<18}{:>8}{:>8}{:>8}{:>8}{:>8}{:>9}", "", "moving", "broad", "both", "whole", "pairs", "contacts");
+    let mut text = format!("{count} geoms, every second moves at up to {speed} m/s, dt 1/60 s; milliseconds\n\n");
+    text += "| engine | moving geoms | broad phase | broad and narrow | whole | pairs | contacts |\n|---|---|---|---|---|---|---|\n";
     let names = ours.iter().map(|o| o.0).chain(theirs.iter().map(|t| t.0)).chain(["rapier f64", "rapier f32"]);
     for (k, name) in names.enumerate() {
         let [m, b, w] = &mut times[k];
         let ms = |t: &mut Vec<f64>| median(t) * 1e3;
         // Rapier always does both.
-        let (moving, broad, both) = (ms(m), if k < n - 2 { ms(b) } else { f64::NAN }, ms(w));
-        println!(
-            "{name:<18}{moving:>8.3}{broad:>8.3}{both:>8.3}{:>8.3}{:>8}{:>9}",
-            moving + both,
-            counts[k].0,
-            counts[k].1
+        let broad = if k < n - 2 { format!("{:.3}", ms(b)) } else { "".into() };
+        let (moving, both) = (ms(m), ms(w));
+        let (pairs, contacts) = counts[k];
+        text += &format!(
+            "| {name} | {moving:.3} | {broad} | {both:.3} | {:.3} | {pairs} | {contacts} |\n",
+            moving + both
         );
     }
-    println!();
-    Ok(())
+    Ok(text + "\n")
+}
+
+/// One engine's answer to a ray: the distance of the first hit.
+type Cast<'a> = Box<dyn FnMut(Vec3, Vec3) -> Option<f64> + 'a>;
+
+/// Asks all engines the same rays in turns of 500; a slow one is only asked the first few turns.
+fn ask(title: &str, rays: &[(Vec3, Vec3)], engines: &mut [(&str, bool, Cast<'_>)]) -> String {
+    let mut times = vec![Vec::new(); engines.len()];
+    let mut sums = vec![(0usize, 0.0f64, 0usize); engines.len()];
+    for (turn, part) in rays.chunks(500).enumerate() {
+        for (k, (_, slow, cast)) in engines.iter_mut().enumerate() {
+            if *slow && turn >= 4 {
+                continue;
+            }
+            let sum = &mut sums[k];
+            times[k].push(seconds(|| {
+                for (from, direction) in part {
+                    if let Some(d) = cast(*from, *direction) {
+                        *sum = (sum.0 + 1, sum.1 + d, sum.2);
+                    }
+                }
+            }));
+            sum.2 += part.len();
+        }
+    }
+    let mut text = format!("{title}\n\n| engine | µs a ray | hit | mean distance, m |\n|---|---|---|---|\n");
+    for (k, (name, ..)) in engines.iter().enumerate() {
+        let (hits, sum, asked) = sums[k];
+        let us = median(&mut times[k]) / 500.0 * 1e6;
+        text += &format!(
+            "| {name} | {us:.3} | {:.2} % | {:.4} |\n",
+            100.0 * hits as f64 / asked as f64,
+            sum / hits.max(1) as f64
+        );
+    }
+    text + "\n"
+}
+
+fn rays(count: usize) -> Result<String, Box<dyn Error>> {
+    let bodies = scene::boxes(10_000);
+    let mut ours = Ours::new(SpaceKind::Bvh, &bodies)?;
+    let queries = ours.colliders.queries(ours.space)?;
+    let mut hash = ode::Space::new(ode::Kind::Hash, &bodies, 100.0);
+    let mut r64 = rapier::double::Scene::new(&bodies);
+    let mut r32 = rapier::single::Scene::new(&bodies);
+    r64.collide();
+    r32.collide();
+    let (p64, p32) = (rapier::double::Shapes::new(&bodies), rapier::single::Shapes::new(&bodies));
+    let length = 100.0;
+    let mut text = ask(
+        &format!("{count} rays of 100 m among 10,000 boxes in a cube of 100 m"),
+        &scene::rays(count),
+        &mut [
+            ("ferrode", false, Box::new(|o, d| queries.ray_cast(o, d, length, |_, _| true).map(|h| h.distance))),
+            ("parry f64", false, Box::new(|o, d| p64.cast(o, d, length))),
+            ("parry f32", false, Box::new(|o, d| p32.cast(o, d, length))),
+            ("rapier f64", false, Box::new(|o, d| r64.cast(o, d, length))),
+            ("rapier f32", false, Box::new(|o, d| r32.cast(o, d, length))),
+            ("libode hash", true, Box::new(|o, d| hash.cast(o, d, length))),
+        ],
+    );
+    let (vertices, triangles) = scene::hills(158);
+    let mesh = ferrode_collide::TriMesh::new(vertices.clone(), triangles.clone())?;
+    let tree = mesh.tree().size() as f64 / triangles.len() as f64;
+    let count_of = triangles.len();
+    let shape = ferrode_collide::Shape::from(mesh);
+    let frame = ferrode_collide::Frame::IDENTITY;
+    let (m64, m32) =
+        (rapier::double::Mesh::new(&vertices, &triangles), rapier::single::Mesh::new(&vertices, &triangles));
+    let mut theirs = ode::Space::mesh(vertices.leak(), triangles.leak());
+    text += &ask(
+        &format!("{count} rays onto hills of {count_of} triangles; ferrode's tree takes {tree:.1} bytes a triangle"),
+        &scene::rays_down(count),
+        &mut [
+            (
+                "ferrode",
+                false,
+                Box::new(|o, d| ferrode_collide::ray_cast(&shape, &frame, o, d, length).map(|h| h.distance)),
+            ),
+            ("parry f64", false, Box::new(|o, d| m64.cast(o, d, length))),
+            ("parry f32", false, Box::new(|o, d| m32.cast(o, d, length))),
+            ("libode", false, Box::new(|o, d| theirs.cast(o, d, length))),
+        ],
+    );
+    Ok(text)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -140,10 +224,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("libode is not built for double precision".into());
     }
     let what = std::env::args().nth(1).unwrap_or_default();
+    let mut text = String::new();
     if what != "rays" {
         for speed in [0.5, 2.0, 10.0] {
-            broad(10_000, speed, 120)?;
+            text += &broad(10_000, speed, 120)?;
         }
     }
+    if what != "broad" {
+        text += &rays(100_000)?;
+    }
+    print!("{text}");
     Ok(())
 }

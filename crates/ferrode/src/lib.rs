@@ -29,8 +29,8 @@ pub use energy::Energy;
 pub use error::Error;
 pub use events::ContactEvent;
 pub use ferrode_collide::{
-    Capsule, CollideOptions, Colliders, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Geom, GeomContact,
-    GeomKey, Plane, Ray, RayHit, Shape, SpaceKey, SpaceKind, Sphere, TriMesh,
+    Capsule, ClosestPoint, CollideOptions, Colliders, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Geom,
+    GeomContact, GeomKey, Plane, Ray, RayHit, Shape, ShapeCastHit, SpaceKey, SpaceKind, Sphere, TriMesh,
 };
 pub use ferrode_dynamics::{
     AMotor, AMotorMode, AutoDisable, AxisFrame, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping,
@@ -43,6 +43,7 @@ pub use ferrode_math::{Aabb, ContactPoint, Mat3, Pose, Quat, Vec3};
 pub use fixed_step::FixedStep;
 pub use geoms::GeomInfo;
 pub use material::{Combine, CombineRules, Material};
+pub use query::Queries;
 pub use step::Step;
 pub use world::World;
 

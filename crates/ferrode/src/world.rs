@@ -80,18 +80,21 @@ impl DerefMut for World {
 impl World {
     /// An empty world with ODE's defaults: no gravity, ERP 0.2, CFM 1e-10; its geoms in a tree of boxes.
     pub fn new() -> Self {
-        Self::with_space(SpaceKind::Bvh)
+        // A tree of boxes has no number that could be wrong.
+        Self::with_space(SpaceKind::Bvh).expect("a tree of boxes can be made")
     }
 
     /// As [`World::new`], with a space of another kind: it decides the order in which pairs are found, and so the order of
     /// contacts.
-    pub fn with_space(kind: SpaceKind) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Collider`] for a quadtree whose numbers can't be.
+    pub fn with_space(kind: SpaceKind) -> Result<Self, Error> {
         let mut dynamics = ferrode_dynamics::World::new();
         let contact_group = dynamics.create_group();
         let mut colliders = Colliders::new();
-        // The only error of `add_space` is a parent that does not exist.
-        let space = colliders.add_space(None, kind).expect("a space without parent can be added");
-        Self {
+        let space = colliders.add_space(None, kind)?;
+        Ok(Self {
             dynamics,
             colliders,
             space,
@@ -112,7 +115,7 @@ impl World {
             time_rest: 0.0,
             steps: 0,
             scratch: Scratch::default(),
-        }
+        })
     }
 
     /// The bodies and joints, without shapes.
