@@ -106,6 +106,14 @@ static int joint_call(const char *op, dJointID j)
         dJointSetHinge2Axes(j, x, y);
     }
     OP("Fixed") dJointSetFixed(j);
+    OP("HingeAnchorDelta") dJointSetHingeAnchorDelta(j, a[1], a[2], a[3], a[4], a[5], a[6]);
+    OP("HingeAxisOffset") dJointSetHingeAxisOffset(j, a[1], a[2], a[3], a[4]);
+    OP("SliderAxisDelta") dJointSetSliderAxisDelta(j, a[1], a[2], a[3], a[4], a[5], a[6]);
+    OP("UniversalAxis1Offset") dJointSetUniversalAxis1Offset(j, a[1], a[2], a[3], a[4], a[5]);
+    OP("UniversalAxis2Offset") dJointSetUniversalAxis2Offset(j, a[1], a[2], a[3], a[4], a[5]);
+    OP("PUAnchorOffset") dJointSetPUAnchorOffset(j, a[1], a[2], a[3], a[4], a[5], a[6]);
+    OP("PistonAnchorOffset") dJointSetPistonAnchorOffset(j, a[1], a[2], a[3], a[4], a[5], a[6]);
+    OP("PistonAxisDelta") dJointSetPistonAxisDelta(j, a[1], a[2], a[3], a[4], a[5], a[6]);
     OP("AMotorMode") dJointSetAMotorMode(j, (int)a[1]);
     OP("AMotorNumAxes") dJointSetAMotorNumAxes(j, (int)a[1]);
     OP("AMotorAxis") dJointSetAMotorAxis(j, (int)a[1], (int)a[2], a[3], a[4], a[5]);

@@ -130,6 +130,9 @@ impl Scene {
             JointType::Transmission => self.add_transmission(dice, j, bodies, positions, [e0, e1]),
             _ => {}
         }
+        if dice.chance(0.25) {
+            self.set_off(dice, j, kind, bodies, [&anchor, &e0, &e1]);
+        }
         let own =
             [JointType::Ball, JointType::Fixed, JointType::DBall, JointType::DHinge, JointType::Transmission];
         if own.contains(&kind) && dice.chance(0.3) {
@@ -147,6 +150,38 @@ impl Scene {
             self.set("joint_enabled", j, &[0.0]);
         }
         self.add_joint_forces(dice, j, kind, bodies);
+    }
+
+    /// Sets what the joint counts as its present position or angle.
+    fn set_off(
+        &mut self,
+        dice: &mut Dice,
+        j: usize,
+        kind: JointType,
+        bodies: [Option<usize>; 2],
+        [anchor, e0, e1]: [&[f64; 3]; 3],
+    ) {
+        let d = dice.vector(0.3).to_array();
+        let (first, rest): (_, &[f64]) = match kind {
+            JointType::Hinge if dice.chance(0.5) => (anchor, &d),
+            JointType::Hinge | JointType::Slider => (e0, &d),
+            // In reverse ODE asks for a frame from two equal axes here.
+            JointType::Universal if bodies[0].is_none() => return,
+            JointType::Universal if dice.chance(0.5) => (e0, &d[..2]),
+            JointType::Universal => (e1, &d[..2]),
+            JointType::PU | JointType::Piston => (anchor, &d),
+            _ => return,
+        };
+        let op = match kind {
+            JointType::Hinge if first == anchor => "HingeAnchorDelta",
+            JointType::Hinge => "HingeAxisOffset",
+            JointType::Slider => "SliderAxisDelta",
+            JointType::Universal if first == e0 => "UniversalAxis1Offset",
+            JointType::Universal => "UniversalAxis2Offset",
+            JointType::PU => "PUAnchorOffset",
+            _ => "PistonAnchorOffset",
+        };
+        self.set(op, j, &[&first[..], rest].concat());
     }
 
     fn add_angular_motor(
