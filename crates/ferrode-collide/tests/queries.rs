@@ -34,7 +34,8 @@ fn random_world(kind: SpaceKind) -> (Colliders, SpaceKey, Vec<GeomKey>) {
 #[test]
 fn rays_agree_with_asking_each_geom() {
     let mut hits = Vec::new();
-    for kind in [SpaceKind::Simple, SpaceKind::HASH, SpaceKind::Bvh] {
+    let tree = SpaceKind::Quadtree { center: [0.0; 2], half_sides: [4.0; 2], depth: 3 };
+    for kind in [SpaceKind::Simple, SpaceKind::HASH, SpaceKind::Bvh, tree] {
         let (mut colliders, space, keys) = random_world(kind);
         let mut random = OdeRandom::new(5);
         let mut number = || f64::from(random.next_u32()) / 4294967296.0 * 2.0 - 1.0;
