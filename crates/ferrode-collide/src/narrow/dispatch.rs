@@ -53,6 +53,17 @@ fn run_plane_swapped(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Con
     out.swap();
 }
 
+fn run_field(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    if let Shape::Heightfield(field) = a {
+        heightfield_shape(field, fa, b, fb, out);
+    }
+}
+
+fn run_field_swapped(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    run_field(b, fb, a, fa, out);
+    out.swap();
+}
+
 const NONE: Option<Collider> = None;
 /// Convex bodies without a file of their own for the pair.
 const BODIES: Option<Collider> = Some(convex_bodies);
@@ -62,7 +73,10 @@ const MESH_SWAPPED: Option<Collider> = Some(run_mesh_swapped);
 /// A convex body and a half-space.
 const PLANE: Option<Collider> = Some(run_plane);
 const PLANE_SWAPPED: Option<Collider> = Some(run_plane_swapped);
-const KINDS: usize = 10;
+/// A heightfield and what collides with planes.
+const FIELD: Option<Collider> = Some(run_field);
+const FIELD_SWAPPED: Option<Collider> = Some(run_field_swapped);
+const KINDS: usize = 11;
 
 /// Row: the first shape; column: the second.
 #[rustfmt::skip]
@@ -79,6 +93,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Sphere, TriMesh, sphere_trimesh),             // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
+        FIELD_SWAPPED,                                      // Heightfield
     ],
     // Cuboid
     [
@@ -92,6 +107,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
+        FIELD_SWAPPED,                                      // Heightfield
     ],
     // Capsule
     [
@@ -105,6 +121,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
+        FIELD_SWAPPED,                                      // Heightfield
     ],
     // Cylinder
     [
@@ -118,6 +135,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
+        FIELD_SWAPPED,                                      // Heightfield
     ],
     // Plane
     [
@@ -131,6 +149,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         swap!(Plane, TriMesh, trimesh_plane),               // TriMesh
         PLANE_SWAPPED,                                      // Ellipsoid
         PLANE_SWAPPED,                                      // Cone
+        NONE,                                               // Heightfield
     ],
     // Ray
     [
@@ -144,6 +163,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Ray, TriMesh, ray_trimesh),                   // TriMesh
         pair!(Ray, Ellipsoid, ray_ellipsoid),               // Ellipsoid
         pair!(Ray, Cone, ray_cone),                         // Cone
+        FIELD_SWAPPED,                                      // Heightfield
     ],
     // Convex
     [
@@ -157,6 +177,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
+        FIELD_SWAPPED,                                      // Heightfield
     ],
     // TriMesh
     [
@@ -170,6 +191,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(TriMesh, TriMesh, trimesh_trimesh),           // TriMesh
         MESH_SWAPPED,                                       // Ellipsoid
         MESH_SWAPPED,                                       // Cone
+        FIELD_SWAPPED,                                      // Heightfield
     ],
     // Ellipsoid
     [
@@ -183,6 +205,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
+        FIELD_SWAPPED,                                      // Heightfield
     ],
     // Cone
     [
@@ -196,6 +219,21 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
+        FIELD_SWAPPED,                                      // Heightfield
+    ],
+    // Heightfield
+    [
+        FIELD,                                              // Sphere
+        FIELD,                                              // Cuboid
+        FIELD,                                              // Capsule
+        FIELD,                                              // Cylinder
+        NONE,                                               // Plane
+        FIELD,                                              // Ray
+        FIELD,                                              // Convex
+        FIELD,                                              // TriMesh
+        FIELD,                                              // Ellipsoid
+        FIELD,                                              // Cone
+        NONE,                                               // Heightfield
     ],
 ];
 

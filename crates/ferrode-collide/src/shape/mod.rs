@@ -6,6 +6,7 @@ mod convex;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+mod heightfield;
 mod hull;
 mod plane;
 mod ray;
@@ -18,6 +19,7 @@ pub use convex::Convex;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
+pub use heightfield::Heightfield;
 pub use plane::Plane;
 pub use ray::Ray;
 pub use sphere::Sphere;
@@ -53,6 +55,8 @@ pub enum Shape {
     Ellipsoid(Ellipsoid),
     /// A cone.
     Cone(Cone),
+    /// A grid of heights.
+    Heightfield(Heightfield),
 }
 
 /// The kind of a shape: its row and column in the pair matrix.
@@ -79,6 +83,8 @@ pub enum ShapeKind {
     Ellipsoid,
     /// [`Cone`].
     Cone,
+    /// [`Heightfield`].
+    Heightfield,
 }
 
 impl Shape {
@@ -95,6 +101,7 @@ impl Shape {
             Self::TriMesh(_) => ShapeKind::TriMesh,
             Self::Ellipsoid(_) => ShapeKind::Ellipsoid,
             Self::Cone(_) => ShapeKind::Cone,
+            Self::Heightfield(_) => ShapeKind::Heightfield,
         }
     }
 
@@ -116,10 +123,11 @@ impl Shape {
             Self::TriMesh(s) => s.aabb(frame),
             Self::Ellipsoid(s) => s.aabb(frame),
             Self::Cone(s) => s.aabb(frame),
+            Self::Heightfield(s) => s.aabb(frame),
         }
     }
 
-    /// Volume in cubic metres; infinite for a plane, zero for a ray.
+    /// Volume in cubic metres; infinite for a plane, zero for a ray and for a heightfield, which is a surface.
     pub fn volume(&self) -> f64 {
         match self {
             Self::Sphere(s) => s.volume(),
@@ -127,7 +135,7 @@ impl Shape {
             Self::Capsule(s) => s.volume(),
             Self::Cylinder(s) => s.volume(),
             Self::Plane(_) => f64::INFINITY,
-            Self::Ray(_) => 0.0,
+            Self::Ray(_) | Self::Heightfield(_) => 0.0,
             Self::Convex(s) => s.volume(),
             Self::TriMesh(s) => s.volume(),
             Self::Ellipsoid(s) => s.volume(),
@@ -150,7 +158,9 @@ impl Shape {
             Self::Cylinder(s) => s.radius() == 0.0 || s.length() == 0.0,
             Self::Ellipsoid(s) => s.radii().to_array().contains(&0.0),
             Self::Cone(s) => s.radius() == 0.0 || s.length() == 0.0,
-            Self::Plane(_) | Self::Ray(_) | Self::Convex(_) | Self::TriMesh(_) => false,
+            Self::Plane(_) | Self::Ray(_) | Self::Convex(_) | Self::TriMesh(_) | Self::Heightfield(_) => {
+                false
+            }
         }
     }
 }

@@ -46,6 +46,20 @@ impl Record {
         self.files.iter().filter_map(move |f| f[name].as_array()).flatten()
     }
 
+    fn field(&self, name: &str) -> Heightfield {
+        let field = self.list("fields").find(|h| h["name"] == name).unwrap_or_else(|| panic!("{name}"));
+        let n = |key: &str| number(&field[key]);
+        let heights: Vec<_> = field["samples"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|h| number(h) * n("scale") + n("offset"))
+            .collect();
+        let (columns, rows) = (n("width_samples") as usize, n("depth_samples") as usize);
+        let made = Heightfield::new(n("width"), n("depth"), columns, rows, heights, n("thickness")).unwrap();
+        if n("wrap") == 1.0 { made.wrapped() } else { made }
+    }
+
     fn mesh(&self, name: &str) -> TriMesh {
         let mesh = self.list("meshes").find(|h| h["name"] == name).unwrap_or_else(|| panic!("{name}"));
         let vertices = mesh["vertices"].as_array().unwrap().iter().map(vector).collect();
@@ -96,10 +110,12 @@ impl Record {
                 return Some((ray.into(), frame));
             }
             "convex" => self.hull(g["hull"].as_str()?).into(),
+            "heightfield" => self.field(g["field"].as_str()?).into(),
             "trimesh" => self.mesh(g["mesh"].as_str()?).into(),
             _ => return None,
         };
-        let r: Vec<f64> = g["R"].as_array()?.iter().map(number).collect();
+        let Some(r) = g["R"].as_array() else { return Some((shape, Frame::IDENTITY)) };
+        let r: Vec<f64> = r.iter().map(number).collect();
         let rotation = Mat3::from_rows([[r[0], r[1], r[2]], [r[3], r[4], r[5]], [r[6], r[7], r[8]]]);
         Some((shape, Frame::new(vector(&g["pos"]), rotation)))
     }

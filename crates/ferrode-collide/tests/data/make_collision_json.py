@@ -56,4 +56,11 @@ write(
         "ray_trimesh_options": full["ray_trimesh_options"],
     },
 )
+write(
+    "field.json",
+    {
+        "fields": full["fields"],
+        "cases": list(cases(["sphere", "box", "capsule", "cylinder", "ray", "heightfield"], ["heightfield"], 1)),
+    },
+)
 write("spaces.json", {"broadphase": full["broadphase"]})
