@@ -256,14 +256,22 @@ fn tags_act_or_are_warned_of() {
         let (table, summary) = run("solver", case, &[(from, to)], &["--time", "0.5"]);
         assert!(table != as_is || summary["warnings"] == 1, "{case}: {summary}");
     }
-    let surface = [
-        ("max_vel", "<kd>1</kd>", "<kd>1</kd><max_vel>0.05</max_vel>"),
-        ("min_depth", "<kd>1</kd>", "<kd>1</kd><min_depth>0.003</min_depth>"),
-    ];
-    let (as_is, plain) = run("softness", "plain", &[], &["--time", "0.5"]);
-    assert_eq!(plain["warnings"], 0);
-    for (case, from, to) in surface {
-        let (table, summary) = run("softness", case, &[(from, to)], &["--time", "0.5"]);
-        assert!(table != as_is || summary["warnings"] == 1, "{case}: {summary}");
+}
+
+/// `<max_vel>` caps the push-out of a deep contact, `<min_depth>` leaves it at a depth.
+#[test]
+fn contacts_are_corrected_as_their_surfaces_say() {
+    let height = |case: &str, tag: &str| {
+        let to = format!("<kd>1</kd>{tag}");
+        let (table, summary) = run("softness", case, &[("<kd>1</kd>", &to)], &["--time", "0.5"]);
+        assert_eq!(summary["warnings"], 0, "{case}");
+        (table, summary["penetration_max_m"].as_f64())
+    };
+    let (plain, _) = height("plain_contact", "");
+    for (case, tag) in
+        [("max_vel", "<max_vel>0.0001</max_vel>"), ("min_depth", "<min_depth>0.003</min_depth>")]
+    {
+        let (table, _) = height(case, tag);
+        assert!(table != plain, "{case} changes the run");
     }
 }

@@ -26,6 +26,11 @@ pub struct Material {
     pub slip2: f64,
     /// Softness of the contact; `None` for the world's ERP and CFM.
     pub softness: Option<Softness>,
+    /// Largest speed in m/s at which contacts push apart; of two materials the smaller one counts, `None` stands for the
+    /// world's.
+    pub max_correcting_velocity: Option<f64>,
+    /// Depth in metres that contacts are left at; of two materials the larger one counts, `None` stands for the world's.
+    pub surface_layer: Option<f64>,
     /// Velocity of the surface along the first and second friction direction, in m/s: a conveyor belt.
     pub motion: [f64; 2],
 }
@@ -44,6 +49,8 @@ impl Default for Material {
             slip1: 0.0,
             slip2: 0.0,
             softness: None,
+            max_correcting_velocity: None,
+            surface_layer: None,
             motion: [0.0; 2],
         }
     }
@@ -73,6 +80,7 @@ impl Material {
             ("second friction", self.friction2.unwrap_or(0.0)),
             ("rolling friction", self.rolling),
             ("spinning friction", self.spinning),
+            ("max correcting velocity", self.max_correcting_velocity.unwrap_or(0.0)),
             ("restitution threshold", self.restitution_threshold),
         ];
         for (what, value) in at_least_zero {
@@ -84,6 +92,7 @@ impl Material {
             ("restitution", self.restitution),
             ("slip 1", self.slip1),
             ("slip 2", self.slip2),
+            ("surface layer", self.surface_layer.unwrap_or(0.0)),
             ("contact erp", s.erp),
             ("contact cfm", s.cfm),
             ("surface velocity 1", self.motion[0]),
@@ -186,6 +195,13 @@ impl CombineRules {
         if motion != [0.0; 2] {
             surface = surface.with_motion(motion[0], motion[1]);
         }
+        let of_both = |a: Option<f64>, b: Option<f64>, choose: fn(f64, f64) -> f64| match (a, b) {
+            (Some(a), Some(b)) => Some(choose(a, b)),
+            (one, other) => one.or(other),
+        };
+        surface.max_correcting_velocity =
+            of_both(a.max_correcting_velocity, b.max_correcting_velocity, f64::min);
+        surface.surface_layer = of_both(a.surface_layer, b.surface_layer, f64::max);
         match (a.softness, b.softness) {
             (Some(a), Some(b)) => surface.with_softness(in_series(a, b)),
             (Some(s), None) | (None, Some(s)) => surface.with_softness(s),

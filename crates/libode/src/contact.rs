@@ -71,6 +71,7 @@ impl ContactRecord {
                 motion_n: f(s.motion_n),
                 slip1: f(s.slip1),
                 slip2: f(s.slip2),
+                ..Surface::default()
             },
             point: ContactPoint {
                 position: vector(&self.geom.position),

@@ -103,6 +103,10 @@ pub struct Surface {
     pub slip1: f64,
     /// Slip along the second tangent.
     pub slip2: f64,
+    /// Largest speed in m/s at which this contact pushes apart; `None` for the world's. ODE has the world's only.
+    pub max_correcting_velocity: Option<f64>,
+    /// Depth in metres that this contact is left at; `None` for the world's. ODE has the world's only.
+    pub surface_layer: Option<f64>,
 }
 
 impl Surface {
@@ -196,6 +200,8 @@ impl Surface {
             (m.has(SurfaceMode::MOTION_N), "motion_n", self.motion_n, false),
             (m.has(SurfaceMode::SLIP1), "slip1", self.slip1, false),
             (m.has(SurfaceMode::SLIP2), "slip2", self.slip2, false),
+            (true, "max correcting velocity", self.max_correcting_velocity.unwrap_or(0.0), true),
+            (true, "surface layer", self.surface_layer.unwrap_or(0.0), false),
         ];
         for (counts, what, value, may_be_infinite) in used {
             if counts {
@@ -260,10 +266,12 @@ impl Contact {
         let s = &self.surface;
         let erp = if s.mode.has(SurfaceMode::SOFT_ERP) { s.soft_erp } else { ctx.erp };
         let motion = if s.mode.has(SurfaceMode::MOTION_N) { s.motion_n } else { 0.0 };
-        let depth = (self.point.depth - ctx.contact_surface_layer).max(0.0);
+        let layer = s.surface_layer.unwrap_or(ctx.contact_surface_layer);
+        let fastest = s.max_correcting_velocity.unwrap_or(ctx.contact_max_correcting_velocity);
+        let depth = (self.point.depth - layer).max(0.0);
         row.position_error = depth;
         row.velocity_target = motion;
-        row.c = (ctx.fps * erp * depth + motion).min(ctx.contact_max_correcting_velocity);
+        row.c = (ctx.fps * erp * depth + motion).min(fastest);
         if s.mode.has(SurfaceMode::BOUNCE) && s.bounce_velocity >= 0.0 {
             let approach = motion - relative_velocity(row, ends);
             if approach > s.bounce_velocity {

@@ -64,6 +64,7 @@ fn contact(n: &[f64]) -> Contact {
         motion_n: n[12],
         slip1: n[13],
         slip2: n[14],
+        ..Surface::default()
     };
     let point = ContactPoint { position: vector(&n[15..]), normal: vector(&n[18..]), depth: n[21] };
     Contact { surface, point, fdir1: vector(&n[22..]) }

@@ -85,6 +85,8 @@ fn material(surface: &Surface, step: f64) -> Material {
         slip1: friction.slip1,
         slip2: friction.slip2,
         softness,
+        max_correcting_velocity: contact.max_vel,
+        surface_layer: contact.min_depth,
         ..Material::default()
     }
 }
@@ -107,13 +109,6 @@ fn note_unsupported(scene: &Scene, collision: &Collision, notes: &mut Notes) {
     let mut note = |message: String| {
         notes.not_supported(collision.origin.clone(), format!("collision `{}`: {message}", collision.name));
     };
-    let (ode, contact) = (&scene.physics.ode, &collision.surface.contact);
-    if contact.max_vel.is_some_and(|velocity| velocity != ode.contact_max_correcting_vel) {
-        note(format!("<max_vel> is the world's, {} m/s", ode.contact_max_correcting_vel));
-    }
-    if contact.min_depth.is_some_and(|depth| depth != ode.contact_surface_layer) {
-        note(format!("<min_depth> is the world's <contact_surface_layer>, {} m", ode.contact_surface_layer));
-    }
     if collision.max_contacts.is_some_and(|most| most < scene.physics.max_contacts) {
         note(format!("<max_contacts> is the world's, {}", scene.physics.max_contacts));
     }
