@@ -4,6 +4,7 @@
 //!
 //! 1. **Shapes and pairs.** A [`Shape`] is a value; [`narrow::collide`] gives the contacts of two shapes at two
 //!    poses, in ODE's conventions: the normal points into the first shape.
+//!    [`manifold`] groups them and knows them again a step later.
 //! 2. **Spaces** ([`space`]): which of many boxes overlap, reported in ODE's order.
 //! 3. **[`Colliders`]**: geoms with keys in a tree of spaces, ready to use.
 //!
@@ -30,6 +31,7 @@ mod contact;
 pub mod filter;
 mod frame;
 mod geom;
+pub mod manifold;
 pub mod narrow;
 pub mod query;
 pub mod shape;

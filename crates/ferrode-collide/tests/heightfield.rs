@@ -106,3 +106,37 @@ fn a_wrapped_field_goes_on() {
         assert!((depth(x) - depth(x + 30.0)).abs() < 1e-9, "{x} {} {}", depth(x), depth(x + 30.0));
     }
 }
+
+/// A long ray looks only at the cells on its way; it finds what many short ones find.
+#[test]
+fn long_rays_agree_with_short_ones() {
+    let mut random = ferrode_math::random::OdeRandom::new(4);
+    let mut number = || f64::from(random.next_u32()) / 4294967296.0;
+    let heights = (0..41 * 31).map(|_| number()).collect();
+    let field = Shape::from(Heightfield::new(40.0, 30.0, 41, 31, heights, 1.0).unwrap());
+    let ray = |length: f64| Shape::from(Ray::new(length).unwrap());
+    let mut total = 0;
+    for _ in 0..200 {
+        let from = Vec3::new((number() - 0.5) * 50.0, 0.2 + number(), (number() - 0.5) * 40.0);
+        let pose =
+            Ray::pose(from, Vec3::new(number() - 0.5, (number() - 0.5) * 0.05, number() - 0.5)).unwrap();
+        let u = pose.rotation.rotate(Vec3::Z);
+        let mut long = Vec::new();
+        collide((&ray(30.0), &pose), (&field, &Pose::IDENTITY), CollideOptions::default(), &mut long);
+        let mut short = Vec::new();
+        for i in 0..300 {
+            let start = f64::from(i) * 0.1;
+            let at = Pose::new(from + u * start, pose.rotation);
+            let mut list = Vec::new();
+            collide((&ray(0.1), &at), (&field, &Pose::IDENTITY), CollideOptions::default(), &mut list);
+            short.extend(list.iter().map(|c| c.point.depth + start));
+        }
+        let mut long: Vec<_> = long.iter().map(|c| c.point.depth).collect();
+        long.sort_by(f64::total_cmp);
+        short.sort_by(f64::total_cmp);
+        assert_eq!(long.len(), short.len(), "{long:?} {short:?}");
+        assert!(long.iter().zip(&short).all(|(a, b)| (a - b).abs() < 1e-9));
+        total += long.len();
+    }
+    assert!(total > 200, "{total}");
+}

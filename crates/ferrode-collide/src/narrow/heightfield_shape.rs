@@ -101,7 +101,8 @@ fn collide_zone(
     let mut tiles = Vec::new();
     let mut used: Vec<[i64; 2]> = Vec::new();
     for x in zone.x[0]..zone.x[1] {
-        for z in zone.z[0]..zone.z[1] {
+        let [from, to] = rows(field, zone, shape, local, x);
+        for z in from..to {
             let at = |i: i64, j: i64| ([x + i, z + j], field.vertex(x + i, z + j));
             let (a, b, c, d) = (at(0, 0), at(1, 0), at(0, 1), at(1, 1));
             tiles.extend(Tile::new([a, b, c], false, aabb.min.y));
@@ -131,6 +132,25 @@ fn collide_zone(
             }
         }
     }
+}
+
+/// The cells of column `x` to look at: all under the box, or of a long ray those under its path.
+fn rows(field: &Heightfield, zone: &Zone, shape: &Shape, local: &Frame, x: i64) -> [i64; 2] {
+    let Shape::Ray(ray) = shape else { return zone.z };
+    let (sx, sz) = field.cell();
+    let (o, u) = ray.line(local);
+    // In cells from the field's corner.
+    let (x0, z0) = ((o.x + 0.5 * field.width()) / sx, (o.z + 0.5 * field.depth()) / sz);
+    let (dx, dz) = (u.x * ray.length() / sx, u.z * ray.length() / sz);
+    if dx == 0.0 {
+        return zone.z;
+    }
+    let at = |edge: f64| z0 + dz * ((edge - x0) / dx).clamp(0.0, 1.0);
+    // A hair wider than the column, against rounding.
+    let (a, b) = (at(x as f64 - 1e-6), at(x as f64 + 1.0 + 1e-6));
+    let from = (a.min(b) - 1e-6).floor().max(zone.z[0] as f64) as i64;
+    let to = ((a.max(b) + 1e-6).floor() + 1.0).min(zone.z[1] as f64) as i64;
+    [from, to]
 }
 
 /// Half a cell: a triangle of the field.
