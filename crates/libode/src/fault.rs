@@ -48,7 +48,11 @@ pub fn from_engine(error: &Error) -> Outcome<()> {
             Fault::internal("assertion \"the axis has a direction\" failed")
         }
         Error::NotARotation { .. } => Fault::internal("assertion \"the rotation can be normalised\" failed"),
+        Error::WrongMode { what } if what.starts_with("transmission axes 1 and 2") => {
+            Fault::user("can't set individual axes in current mode")
+        }
         Error::WrongMode { what } => Fault::user(what),
+        Error::OutOfRange { what: "transmission ratio", .. } => Fault::user("ratio must be positive"),
         Error::OutOfRange { expected: "a positive number", .. } => Fault::user("value must be positive"),
         _ => Fault::ARGUMENT,
     })
