@@ -8,8 +8,8 @@ use super::gjk::Simplex;
 use super::support::{Body, Vertex, difference};
 use ferrode_math::Vec3;
 
-const VERTICES: usize = 100;
-const FACES: usize = 256;
+const VERTICES: usize = 80;
+const FACES: usize = 192;
 const EDGES: usize = 128;
 
 /// The least overlap of two cores.
@@ -186,7 +186,7 @@ pub(crate) fn epa(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex) -> Option<Depth
     for f in faces {
         p.add_face(f);
     }
-    let tolerance = 1e-11 * scale;
+    let tolerance = 1e-9 * scale;
     let slack = 1e-15 * scale;
     let mut nearest = p.nearest_face()?;
     let mut upper = f64::INFINITY;

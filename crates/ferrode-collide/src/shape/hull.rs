@@ -2,6 +2,7 @@
 
 use super::ShapeError;
 use ferrode_math::Vec3;
+use std::collections::HashMap;
 
 /// The corners that are left, and the faces, counter-clockwise as seen from outside.
 pub(super) struct Hull {
@@ -27,6 +28,8 @@ const COPLANAR: f64 = 1.0 - 1e-10;
 struct Builder<'a> {
     points: &'a [Vec3],
     triangles: Vec<Triangle>,
+    /// The triangle alive that has each edge in this direction. Only looked up, never walked.
+    edges: HashMap<(u32, u32), usize>,
     slack: f64,
 }
 
@@ -39,6 +42,9 @@ impl Builder<'_> {
         let [a, b, c] = v.map(|i| self.at(i));
         let normal = (b - a).cross(c - a).normalized_or(Vec3::ZERO);
         let d = normal.dot((a + b + c) * (1.0 / 3.0));
+        for (from, to) in sides(v) {
+            self.edges.insert((from, to), self.triangles.len());
+        }
         self.triangles.push(Triangle { v, normal, d, outside: Vec::new(), furthest: (0.0, 0), alive: true });
     }
 
@@ -56,6 +62,11 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// The edges of a triangle.
+fn sides(v: [u32; 3]) -> [(u32, u32); 3] {
+    [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])]
 }
 
 /// The hull of at least four finite points.
@@ -86,7 +97,7 @@ pub(super) fn hull(points: &[Vec3]) -> Result<Hull, ShapeError> {
     let (thickness, d) = furthest(&|p| (p - at(a)).dot(n).abs());
     thin("thickness of a convex polyhedron", thickness)?;
 
-    let mut builder = Builder { points, triangles: Vec::new(), slack };
+    let mut builder = Builder { points, triangles: Vec::new(), edges: HashMap::new(), slack };
     let (b, c) = if (at(d) - at(a)).dot(n) > 0.0 { (c, b) } else { (b, c) };
     for v in [[a, b, c], [a, d, b], [b, d, c], [c, d, a]] {
         builder.add(v);
@@ -96,23 +107,14 @@ pub(super) fn hull(points: &[Vec3]) -> Result<Hull, ShapeError> {
             builder.assign(i, 0);
         }
     }
-    let mut next = 0;
-    while next < builder.triangles.len() {
-        if builder.triangles[next].alive && !builder.triangles[next].outside.is_empty() {
-            expand(&mut builder, next);
-            next = 0;
-            // Dead triangles at the front are passed over quickly; drop them when they are many.
-            if builder.triangles.len() > 64 {
-                let alive = builder.triangles.iter().filter(|t| t.alive).count();
-                if 2 * alive < builder.triangles.len() {
-                    builder.triangles.retain(|t| t.alive);
-                }
-            }
-        } else {
-            next += 1;
+    let mut pending: Vec<usize> = (0..builder.triangles.len()).collect();
+    while let Some(i) = pending.pop() {
+        if builder.triangles[i].alive && !builder.triangles[i].outside.is_empty() {
+            let first = builder.triangles.len();
+            expand(&mut builder, i);
+            pending.extend(first..builder.triangles.len());
         }
     }
-    builder.triangles.retain(|t| t.alive);
     merge(&builder)
 }
 
@@ -123,35 +125,35 @@ fn expand(builder: &mut Builder<'_>, start: usize) {
     // The triangles that see the point are connected through their edges; only such may go, else rounding could tear
     // a second hole.
     let mut visible = vec![start];
-    let sees = |t: &Triangle| t.alive && t.normal.dot(p) - t.d > 0.0;
+    builder.triangles[start].alive = false;
+    let mut horizon: Vec<(u32, u32)> = Vec::new();
+    let mut orphans = Vec::new();
     let mut k = 0;
     while k < visible.len() {
-        let v = builder.triangles[visible[k]].v;
-        for (i, t) in builder.triangles.iter().enumerate() {
-            let shared = t.v.iter().filter(|x| v.contains(x)).count();
-            if shared == 2 && sees(t) && !visible.contains(&i) {
-                visible.push(i);
+        for (from, to) in sides(builder.triangles[visible[k]].v) {
+            let Some(&other) = builder.edges.get(&(to, from)) else { continue };
+            let t = &mut builder.triangles[other];
+            if t.alive {
+                if t.normal.dot(p) - t.d > 0.0 {
+                    t.alive = false;
+                    visible.push(other);
+                } else {
+                    horizon.push((from, to));
+                }
             }
         }
         k += 1;
     }
-    let mut edges: Vec<(u32, u32)> = Vec::new();
-    let mut orphans = Vec::new();
     for &i in &visible {
-        let t = &mut builder.triangles[i];
-        t.alive = false;
-        orphans.append(&mut t.outside);
-        for (from, to) in [(t.v[0], t.v[1]), (t.v[1], t.v[2]), (t.v[2], t.v[0])] {
-            match edges.iter().position(|&e| e == (to, from)) {
-                Some(k) => {
-                    edges.swap_remove(k);
-                }
-                None => edges.push((from, to)),
-            }
+        orphans.append(&mut builder.triangles[i].outside);
+        for side in sides(builder.triangles[i].v) {
+            builder.edges.remove(&side);
         }
     }
+    // A triangle may have turned out to see the point after one of its edges was noted.
+    horizon.retain(|&(from, to)| builder.edges.contains_key(&(to, from)));
     let first = builder.triangles.len();
-    for (from, to) in edges {
+    for (from, to) in horizon {
         builder.add([from, to, apex]);
     }
     for point in orphans {
@@ -167,7 +169,7 @@ fn merge(builder: &Builder<'_>) -> Result<Hull, ShapeError> {
     let mut face_of = vec![usize::MAX; triangles.len()];
     let mut faces: Vec<Vec<u32>> = Vec::new();
     for start in 0..triangles.len() {
-        if face_of[start] != usize::MAX {
+        if !triangles[start].alive || face_of[start] != usize::MAX {
             continue;
         }
         let normal = triangles[start].normal;
@@ -176,10 +178,11 @@ fn merge(builder: &Builder<'_>) -> Result<Hull, ShapeError> {
         let mut group = vec![start];
         let mut k = 0;
         while k < group.len() {
-            let v = triangles[group[k]].v;
-            for (i, t) in triangles.iter().enumerate() {
-                let shared = t.v.iter().filter(|x| v.contains(x)).count();
-                if shared == 2 && face_of[i] == usize::MAX && t.normal.dot(normal) > COPLANAR {
+            for (from, to) in sides(triangles[group[k]].v) {
+                if let Some(&i) = builder.edges.get(&(to, from))
+                    && face_of[i] == usize::MAX
+                    && triangles[i].normal.dot(normal) > COPLANAR
+                {
                     face_of[i] = face;
                     group.push(i);
                 }
@@ -188,8 +191,7 @@ fn merge(builder: &Builder<'_>) -> Result<Hull, ShapeError> {
         }
         let mut edges: Vec<(u32, u32)> = Vec::new();
         for &i in &group {
-            let v = triangles[i].v;
-            for (from, to) in [(v[0], v[1]), (v[1], v[2]), (v[2], v[0])] {
+            for (from, to) in sides(triangles[i].v) {
                 match edges.iter().position(|&e| e == (to, from)) {
                     Some(k) => {
                         edges.swap_remove(k);
