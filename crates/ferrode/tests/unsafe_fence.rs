@@ -21,9 +21,10 @@ fn may_be_unsafe(path: &str) -> bool {
 
 #[test]
 fn unsafe_code_stays_behind_its_fence() {
-    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let crates = here.parent().expect("the crate lies in the workspace's folder of crates");
     let mut files = Vec::new();
-    sources(&crates, &mut files);
+    sources(crates, &mut files);
     assert!(files.len() > 50, "the search looks into the workspace's crates");
     // Put together here so that this file does not find itself.
     let word = ["un", "safe"].concat();
