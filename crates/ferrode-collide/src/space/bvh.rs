@@ -4,7 +4,7 @@ use super::{BroadPhase, Members, Probe, Proxy, ProxyId, ProxyTable, Scratch};
 use crate::filter::passes;
 use ferrode_math::{Aabb, Vec3};
 
-/// Leaves are larger than the geoms by this part of their size, so that small moves change nothing.
+/// Leaves of what moves are larger than the geoms by this part of their size, so that small moves change nothing.
 const FAT: f64 = 0.1;
 /// A leaf that its geom left grows in the direction of the move by this part of it: the geom will go on.
 const AHEAD: f64 = 1.0;
@@ -12,7 +12,7 @@ const AHEAD: f64 = 1.0;
 /// Trees of boxes that are kept from step to step: the space for many geoms of which most move little.
 ///
 /// ```text
-///   still tree    what has not moved since it was added; left alone
+///   still tree    what has not moved since it was added: leaves fit tightly, and are left alone
 ///   moving tree   the rest: leaves are larger than their geoms and change only when these leave them
 ///   unbounded     planes: compared with everything
 ///   near          all pairs whose leaves overlap, sorted; only a leaf that changed looks for its pairs anew
@@ -134,7 +134,7 @@ impl BvhSpace {
                 self.unbounded.push(id);
                 Home::Unbounded
             } else if home == Home::None {
-                self.work.new[0].push((id.0, fat(aabb, None)));
+                self.work.new[0].push((id.0, Box32::around(aabb)));
                 Home::Still
             } else {
                 self.work.new[1].push((id.0, fat(aabb, None)));
@@ -356,18 +356,18 @@ impl BroadPhase for BvhSpace {
         limit: &mut f64,
         report: &mut dyn FnMut(ProxyId, &mut f64),
     ) {
-        // Leaves are larger than geoms: look at the geom's own box before its shape is asked.
-        let mut consider = |id: ProxyId, limit: &mut f64| {
+        let mut consider = |id: ProxyId, tight: bool, limit: &mut f64| {
             let member = table.get(id);
-            if member.enabled && probe.enter_aabb(&member.aabb, *limit).is_some() {
+            // Leaves of what moves are larger than the geom: look at its own box before its shape is asked.
+            if member.enabled && (tight || probe.enter_aabb(&member.aabb, *limit).is_some()) {
                 report(id, limit);
             }
         };
         for &id in &self.unbounded {
-            consider(id, limit);
+            consider(id, false, limit);
         }
-        self.still.seek(probe, limit, |id, limit| consider(ProxyId(id), limit));
-        self.moving.seek(probe, limit, |id, limit| consider(ProxyId(id), limit));
+        self.still.seek(probe, limit, |id, limit| consider(ProxyId(id), true, limit));
+        self.moving.seek(probe, limit, |id, limit| consider(ProxyId(id), false, limit));
     }
 
     fn members(&self) -> &Members {

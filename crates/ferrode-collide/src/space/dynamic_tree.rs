@@ -2,6 +2,7 @@
 
 use super::f32_box::{Box32, Pending};
 use super::probe::{Probe, nearer};
+use super::tree::split;
 
 const NONE: u32 = u32::MAX;
 
@@ -83,8 +84,7 @@ impl DynamicTree {
             .map(|(payload, &leaf)| (payload as u32, self.nodes[leaf as usize].bounds()))
     }
 
-    /// Rebuilds the tree over these boxes: split at the middle of the longest side of the box around the centres, halves
-    /// by count where that fails.
+    /// Rebuilds the tree over these boxes by the surface area heuristic.
     pub fn build(&mut self, items: &mut [(u32, Box32)]) {
         self.nodes.clear();
         self.parents.clear();
@@ -417,28 +417,4 @@ fn cross(
         }
         _ => stack.extend([(a, nb.child), (a, nb.child + 1)]),
     }
-}
-
-/// Puts the items of the lower half first and returns how many they are: neither none nor all of two or more.
-pub(super) fn split(items: &mut [(u32, Box32)]) -> usize {
-    let mut lo = [f32::INFINITY; 3];
-    let mut hi = [f32::NEG_INFINITY; 3];
-    for (_, b) in items.iter() {
-        for i in 0..3 {
-            let c = b.center2(i);
-            lo[i] = lo[i].min(c);
-            hi[i] = hi[i].max(c);
-        }
-    }
-    let e = [hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]];
-    let axis = if e[0] >= e[1] && e[0] >= e[2] { 0 } else { 1 + usize::from(e[2] > e[1]) };
-    let middle = 0.5 * (lo[axis] + hi[axis]);
-    let mut split = 0;
-    for k in 0..items.len() {
-        if items[k].1.center2(axis) < middle {
-            items.swap(split, k);
-            split += 1;
-        }
-    }
-    if split == 0 || split == items.len() { items.len() / 2 } else { split }
 }

@@ -15,6 +15,8 @@ pub struct Probe {
     /// Of the direction.
     inverse: [f64; 3],
     half: [f64; 3],
+    /// Some component of the direction is zero.
+    flat: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +34,7 @@ impl Probe {
             origin: origin.to_array(),
             inverse: direction.to_array().map(|x| 1.0 / x),
             half: [0.0; 3],
+            flat: direction.to_array().iter().any(|x| !(1.0 / x).is_finite()),
         }
     }
 
@@ -83,14 +86,17 @@ impl Probe {
         let (mut lo, mut hi) = (0.0f64, limit);
         for i in 0..3 {
             let (o, inverse) = (self.origin[i], self.inverse[i]);
-            if inverse.is_finite() {
-                let (s, t) = ((min[i] - o) * inverse, (max[i] - o) * inverse);
-                let (s, t) = if inverse < 0.0 { (t, s) } else { (s, t) };
-                lo = if s > lo { s } else { lo };
-                hi = if t < hi { t } else { hi };
-            } else if o < min[i] || o > max[i] {
-                return None;
+            // Along no axis at all: the products below would not be numbers.
+            if self.flat && !inverse.is_finite() {
+                if o < min[i] || o > max[i] {
+                    return None;
+                }
+                continue;
             }
+            let (s, t) = ((min[i] - o) * inverse, (max[i] - o) * inverse);
+            let (near, far) = (lesser(s, t), greater(s, t));
+            lo = greater(near, lo);
+            hi = lesser(far, hi);
         }
         (lo <= hi + SLACK * (lo.abs() + hi.abs())).then_some(lo)
     }
@@ -105,6 +111,17 @@ impl Probe {
     pub(crate) fn enter(&self, b: &Box32, limit: f64) -> Option<f64> {
         self.enter_bounds(b.min.map(f64::from), b.max.map(f64::from), limit)
     }
+}
+
+// One instruction each, unlike `f64::min` and `f64::max`, which look out for NaN.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// Of the children `c` and `c + 1`, which are met at `a` and `b`: the one to go on with; the other has to wait.

@@ -137,7 +137,7 @@ impl AabbTree {
 }
 
 /// Puts the items of the lower part first and returns how many they are: neither none nor all.
-fn split(items: &mut [(u32, Box32)]) -> usize {
+pub(super) fn split(items: &mut [(u32, Box32)]) -> usize {
     let mut centers = Box32::EMPTY;
     for (_, b) in items.iter() {
         let c = [b.center2(0), b.center2(1), b.center2(2)];
