@@ -1,48 +1,23 @@
 //! A binary tree of boxes whose leaves come, go and move.
 
 use super::f32_box::{Box32, Pending};
+use super::pair_nodes::{Node, Nodes};
 use super::probe::{Probe, nearer};
 use super::tree::split;
 
 const NONE: u32 = u32::MAX;
 
-/// 32 bytes, half a cache line. The two children of a node lie side by side: node i's sibling is node i ^ 1, and pair
-/// i >> 1 has one parent.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-struct Node {
-    min: [f32; 3],
-    /// The first of two children; `NONE` for a leaf.
-    child: u32,
-    max: [f32; 3],
-    /// The number at a leaf.
-    payload: u32,
+/// Links of inner nodes are their first child, leaves have none; tags are payloads.
+fn leaf(payload: u32, bounds: &Box32) -> Node {
+    Node { bounds: *bounds, link: NONE, tag: payload }
 }
 
 impl Node {
     #[inline(always)]
-    fn bounds(&self) -> Box32 {
-        Box32 { min: self.min, max: self.max }
-    }
-
-    #[inline(always)]
-    fn set_bounds(&mut self, b: &Box32) {
-        (self.min, self.max) = (b.min, b.max);
-    }
-
-    #[inline(always)]
     fn is_leaf(&self) -> bool {
-        self.child == NONE
-    }
-
-    #[inline(always)]
-    fn overlaps(&self, b: &Box32) -> bool {
-        self.bounds().overlaps(b)
+        self.link == NONE
     }
 }
-
-const VACANT: Node =
-    Node { min: [f32::INFINITY; 3], child: NONE, max: [f32::NEG_INFINITY; 3], payload: NONE };
 
 /// A tree of bounded boxes, each with a number of its own.
 ///
@@ -52,8 +27,8 @@ const VACANT: Node =
 /// where it is in the tree.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct DynamicTree {
-    /// Node 0 is the root, node 1 is never used.
-    nodes: Vec<Node>,
+    /// Node 0 is the root, node 1 is never used. Node i's sibling is i ^ 1.
+    nodes: Nodes,
     /// By pair: the node above.
     parents: Vec<u32>,
     /// Pairs not in use.
@@ -72,7 +47,7 @@ impl DynamicTree {
     /// The box of the leaf with this payload, if there is one.
     pub fn leaf(&self, payload: u32) -> Option<Box32> {
         let leaf = *self.leaves.get(payload as usize)?;
-        (leaf != NONE).then(|| self.nodes[leaf as usize].bounds())
+        (leaf != NONE).then(|| self.nodes.bounds(leaf))
     }
 
     /// Every payload and box, in an order that depends on nothing but the history of the tree.
@@ -81,7 +56,7 @@ impl DynamicTree {
             .iter()
             .enumerate()
             .filter(|(_, l)| **l != NONE)
-            .map(|(payload, &leaf)| (payload as u32, self.nodes[leaf as usize].bounds()))
+            .map(|(payload, &leaf)| (payload as u32, self.nodes.bounds(leaf)))
     }
 
     /// Rebuilds the tree over these boxes by the surface area heuristic.
@@ -93,7 +68,7 @@ impl DynamicTree {
         self.count = items.len();
         if let Some(largest) = items.iter().map(|i| i.0).max() {
             self.grow_leaves(largest);
-            self.nodes.resize(2, VACANT);
+            self.nodes.add_pair();
             self.parents.push(NONE);
             self.build_node(0, items);
         }
@@ -101,8 +76,7 @@ impl DynamicTree {
 
     fn build_node(&mut self, node: u32, items: &mut [(u32, Box32)]) {
         if let [(payload, bounds)] = items {
-            self.nodes[node as usize] =
-                Node { min: bounds.min, child: NONE, max: bounds.max, payload: *payload };
+            self.nodes.set(node, leaf(*payload, bounds));
             self.leaves[*payload as usize] = node;
             return;
         }
@@ -111,8 +85,7 @@ impl DynamicTree {
         let child = self.new_pair(node);
         self.build_node(child, low);
         self.build_node(child + 1, high);
-        let bounds = self.nodes[child as usize].bounds().union(&self.nodes[child as usize + 1].bounds());
-        self.nodes[node as usize] = Node { min: bounds.min, child, max: bounds.max, payload: NONE };
+        self.nodes.set(node, Node { bounds: self.nodes.joint(child), link: child, tag: NONE });
     }
 
     fn grow_leaves(&mut self, payload: u32) {
@@ -129,19 +102,16 @@ impl DynamicTree {
             }
             None => {
                 self.parents.push(parent);
-                self.nodes.extend([VACANT; 2]);
-                self.nodes.len() as u32 - 2
+                self.nodes.add_pair()
             }
         }
     }
 
     /// Tells what points at node `i` that it is there.
     fn relink(&mut self, i: u32) {
-        let node = &self.nodes[i as usize];
-        if node.is_leaf() {
-            self.leaves[node.payload as usize] = i;
-        } else {
-            self.parents[(node.child >> 1) as usize] = i;
+        match self.nodes.numbers(i) {
+            (NONE, payload) => self.leaves[payload as usize] = i,
+            (child, _) => self.parents[(child >> 1) as usize] = i,
         }
     }
 
@@ -149,22 +119,21 @@ impl DynamicTree {
     pub fn insert(&mut self, payload: u32, bounds: &Box32) {
         self.grow_leaves(payload);
         self.count += 1;
-        let leaf = Node { min: bounds.min, child: NONE, max: bounds.max, payload };
         if self.count == 1 {
             if self.nodes.is_empty() {
-                self.nodes.resize(2, VACANT);
+                self.nodes.add_pair();
                 self.parents.push(NONE);
             }
-            self.nodes[0] = leaf;
+            self.nodes.set(0, leaf(payload, bounds));
             self.leaves[payload as usize] = 0;
             return;
         }
         // The sibling moves down to a new pair, beside the new leaf; its place becomes their parent.
         let place = self.best_sibling(bounds);
         let pair = self.new_pair(place);
-        self.nodes[pair as usize] = self.nodes[place as usize];
-        self.nodes[pair as usize + 1] = leaf;
-        self.nodes[place as usize].child = pair;
+        self.nodes.set(pair, self.nodes.get(place));
+        self.nodes.set(pair + 1, leaf(payload, bounds));
+        self.nodes.set_link(place, pair);
         self.relink(pair);
         self.relink(pair + 1);
         self.refit(place);
@@ -183,7 +152,7 @@ impl DynamicTree {
         }
         // The sibling takes the parent's place.
         let parent = self.parents[(i >> 1) as usize];
-        self.nodes[parent as usize] = self.nodes[(i ^ 1) as usize];
+        self.nodes.set(parent, self.nodes.get(i ^ 1));
         self.relink(parent);
         self.free.push(i >> 1);
         if parent != 0 {
@@ -193,17 +162,16 @@ impl DynamicTree {
 
     /// Gives a leaf another box and leaves those above it wrong: for all that is done before [`build`](Self::build).
     pub fn set_box(&mut self, payload: u32, bounds: &Box32) {
-        let leaf = self.leaves[payload as usize];
-        self.nodes[leaf as usize].set_bounds(bounds);
+        self.nodes.set_bounds(self.leaves[payload as usize], bounds);
     }
 
     /// Gives a leaf of the tree another box.
     pub fn change(&mut self, payload: u32, bounds: &Box32) {
         let i = self.leaves[payload as usize];
-        let sibling = self.nodes[(i ^ 1) as usize].bounds();
+        let sibling = self.nodes.bounds(i ^ 1);
         if i != 0 {
             let parent = self.parents[(i >> 1) as usize];
-            let old = self.nodes[parent as usize].area_of();
+            let old = self.nodes.bounds(parent).area();
             if bounds.union(&sibling).area() > 2.0 * old {
                 // It went far: the tree is better with it elsewhere.
                 self.remove(payload);
@@ -211,7 +179,7 @@ impl DynamicTree {
                 return;
             }
         }
-        self.nodes[i as usize].set_bounds(bounds);
+        self.nodes.set_bounds(i, bounds);
         if i != 0 {
             self.refit(self.parents[(i >> 1) as usize]);
         }
@@ -221,34 +189,33 @@ impl DynamicTree {
     fn best_sibling(&self, bounds: &Box32) -> u32 {
         let mut i = 0;
         loop {
-            let node = &self.nodes[i as usize];
+            let node = self.nodes.get(i);
             if node.is_leaf() {
                 return i;
             }
-            let joint = node.bounds().union(bounds).area();
+            let joint = node.bounds.union(bounds).area();
             // What all nodes below inherit if the leaf goes further down.
-            let inherited = joint - node.area_of();
+            let inherited = joint - node.bounds.area();
             let cost = |child: u32| {
-                let c = &self.nodes[child as usize];
-                let union = c.bounds().union(bounds).area();
-                inherited + if c.is_leaf() { union } else { union - c.area_of() }
+                let c = self.nodes.get(child);
+                let union = c.bounds.union(bounds).area();
+                inherited + if c.is_leaf() { union } else { union - c.bounds.area() }
             };
-            let (left, right) = (cost(node.child), cost(node.child + 1));
+            let (left, right) = (cost(node.link), cost(node.link + 1));
             if joint < left && joint < right {
                 return i;
             }
-            i = if left < right { node.child } else { node.child + 1 };
+            i = if left < right { node.link } else { node.link + 1 };
         }
     }
 
     /// Recomputes the boxes from node `i` up, improving the tree on the way, until nothing changes.
     fn refit(&mut self, mut i: u32) {
         loop {
-            let child = self.nodes[i as usize].child as usize;
-            let bounds = self.nodes[child].bounds().union(&self.nodes[child + 1].bounds());
-            let node = &mut self.nodes[i as usize];
-            let same = node.bounds() == bounds;
-            node.set_bounds(&bounds);
+            let node = self.nodes.get(i);
+            let bounds = self.nodes.joint(node.link);
+            let same = node.bounds == bounds;
+            self.nodes.set_bounds(i, &bounds);
             self.rotate(i);
             if same || i == 0 {
                 return;
@@ -259,17 +226,16 @@ impl DynamicTree {
 
     /// Swaps a child of node `i` with one of the other child's children if that makes the other child's box smaller.
     fn rotate(&mut self, i: u32) {
-        let child = self.nodes[i as usize].child;
+        let (child, _) = self.nodes.numbers(i);
         let mut best = (0.0, 0, 0);
         for (lone, other) in [(child, child + 1), (child + 1, child)] {
-            let o = &self.nodes[other as usize];
+            let o = self.nodes.get(other);
             if o.is_leaf() {
                 continue;
             }
-            let (area, lone_bounds) = (o.area_of(), self.nodes[lone as usize].bounds());
-            for grandchild in [o.child, o.child + 1] {
-                let stays = &self.nodes[(grandchild ^ 1) as usize];
-                let gain = area - lone_bounds.union(&stays.bounds()).area();
+            let (area, lone_bounds) = (o.bounds.area(), self.nodes.bounds(lone));
+            for grandchild in [o.link, o.link + 1] {
+                let gain = area - lone_bounds.union(&self.nodes.bounds(grandchild ^ 1)).area();
                 if gain > best.0 {
                     best = (gain, lone, grandchild);
                 }
@@ -277,38 +243,50 @@ impl DynamicTree {
         }
         let (gain, lone, grandchild) = best;
         if gain > 0.0 {
-            self.nodes.swap(lone as usize, grandchild as usize);
+            let (a, b) = (self.nodes.get(lone), self.nodes.get(grandchild));
+            self.nodes.set(lone, b);
+            self.nodes.set(grandchild, a);
             self.relink(lone);
             self.relink(grandchild);
             let other = lone ^ 1;
-            let pair = self.nodes[other as usize].child as usize;
-            let bounds = self.nodes[pair].bounds().union(&self.nodes[pair + 1].bounds());
-            self.nodes[other as usize].set_bounds(&bounds);
+            let bounds = self.nodes.joint(self.nodes.numbers(other).0);
+            self.nodes.set_bounds(other, &bounds);
         }
     }
 
     /// Calls `found` with the payload of each leaf that passes `test`, as do the nodes above it.
     #[inline(always)]
-    pub fn walk(&self, test: impl Fn(&Box32) -> bool, mut found: impl FnMut(u32)) {
-        if self.count == 0 || !test(&self.nodes[0].bounds()) {
-            return;
+    pub fn walk(&self, test: impl Fn(&Box32) -> bool, found: impl FnMut(u32)) {
+        if self.count > 0 && test(&self.nodes.bounds(0)) {
+            self.descend(|c| [test(&self.nodes.bounds(c)), test(&self.nodes.bounds(c + 1))], found);
         }
+    }
+
+    /// Calls `found` with the payload of each leaf whose box overlaps `bounds`.
+    #[inline]
+    pub fn query(&self, bounds: &Box32, found: impl FnMut(u32)) {
+        if self.count > 0 && self.nodes.bounds(0).overlaps(bounds) {
+            self.descend(|c| self.nodes.pair(c).overlaps(bounds), found);
+        }
+    }
+
+    /// Visits the leaves below the root that `test` lets through, two siblings at a time.
+    #[inline(always)]
+    fn descend(&self, test: impl Fn(u32) -> [bool; 2], mut found: impl FnMut(u32)) {
         let mut pending: Pending<u32> = Pending::new();
         let mut i = 0;
         loop {
-            let node = &self.nodes[i as usize];
-            if node.is_leaf() {
-                found(node.payload);
+            let (child, payload) = self.nodes.numbers(i);
+            if child == NONE {
+                found(payload);
             } else {
-                let c = node.child as usize;
-                if let [a, b] = &self.nodes[c..c + 2] {
-                    if test(&b.bounds()) {
-                        pending.push(node.child + 1);
-                    }
-                    if test(&a.bounds()) {
-                        i = node.child;
-                        continue;
-                    }
+                let [a, b] = test(child);
+                if b {
+                    pending.push(child + 1);
+                }
+                if a {
+                    i = child;
+                    continue;
                 }
             }
             match pending.pop() {
@@ -318,32 +296,22 @@ impl DynamicTree {
         }
     }
 
-    /// Calls `found` with the payload of each leaf whose box overlaps `bounds`.
-    #[inline]
-    pub fn query(&self, bounds: &Box32, found: impl FnMut(u32)) {
-        self.walk(|b| b.overlaps(bounds), found);
-    }
-
     /// Calls `found` with the payload of each leaf that the probe meets within the limit, nearer ones first as far as
     /// the boxes tell. `found` may lower the limit.
     #[inline]
     pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
-        if self.count == 0 || probe.enter(&self.nodes[0].bounds(), *limit).is_none() {
+        if self.count == 0 || probe.enter(&self.nodes.bounds(0), *limit).is_none() {
             return;
         }
         let mut pending: Pending<(u32, f32)> = Pending::new();
         let mut i = 0;
         loop {
-            let node = &self.nodes[i as usize];
+            let (child, payload) = self.nodes.numbers(i);
             let mut next = None;
-            if node.is_leaf() {
-                found(node.payload, limit);
+            if child == NONE {
+                found(payload, limit);
             } else {
-                let c = node.child;
-                if let [left, right] = &self.nodes[c as usize..c as usize + 2] {
-                    let (a, b) = (probe.enter(&left.bounds(), *limit), probe.enter(&right.bounds(), *limit));
-                    next = nearer(c, a, b, &mut pending);
-                }
+                next = nearer(child, probe.enter_pair(self.nodes.pair(child), *limit), &mut pending);
             }
             while next.is_none() {
                 let Some((waiting, at)) = pending.pop() else { return };
@@ -371,7 +339,7 @@ impl DynamicTree {
     }
 
     fn inner_pairs(&self, i: u32, stack: &mut Vec<(u32, u32)>) {
-        let c = self.nodes[i as usize].child;
+        let (c, _) = self.nodes.numbers(i);
         if c != NONE {
             stack.extend([(c, c), (c + 1, c + 1), (c, c + 1)]);
         }
@@ -389,32 +357,25 @@ impl DynamicTree {
     }
 }
 
-impl Node {
-    #[inline(always)]
-    fn area_of(&self) -> f32 {
-        self.bounds().area()
-    }
-}
-
 /// One step of comparing node `a` of one tree with node `b` of another: reports two leaves, or opens the larger node.
 #[inline]
 fn cross(
-    first: &[Node],
+    first: &Nodes,
     a: u32,
-    second: &[Node],
+    second: &Nodes,
     b: u32,
     stack: &mut Vec<(u32, u32)>,
     found: &mut impl FnMut(u32, u32),
 ) {
-    let (na, nb) = (&first[a as usize], &second[b as usize]);
-    if !na.overlaps(&nb.bounds()) {
+    let (na, nb) = (first.get(a), second.get(b));
+    if !na.bounds.overlaps(&nb.bounds) {
         return;
     }
     match (na.is_leaf(), nb.is_leaf()) {
-        (true, true) => found(na.payload, nb.payload),
-        (leaf, other) if !leaf && (other || na.area_of() >= nb.area_of()) => {
-            stack.extend([(na.child, b), (na.child + 1, b)]);
+        (true, true) => found(na.tag, nb.tag),
+        (leaf, other) if !leaf && (other || na.bounds.area() >= nb.bounds.area()) => {
+            stack.extend([(na.link, b), (na.link + 1, b)]);
         }
-        _ => stack.extend([(a, nb.child), (a, nb.child + 1)]),
+        _ => stack.extend([(a, nb.link), (a, nb.link + 1)]),
     }
 }

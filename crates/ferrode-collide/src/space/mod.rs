@@ -8,6 +8,7 @@ mod bvh;
 mod dynamic_tree;
 mod f32_box;
 mod hash;
+mod pair_nodes;
 mod probe;
 mod proxy;
 mod quadtree;

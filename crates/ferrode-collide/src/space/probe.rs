@@ -1,6 +1,7 @@
 //! What searches of trees look for: boxes that a ray, a moving box or a growing ball meets.
 
 use super::f32_box::{Box32, Pending, down};
+use super::pair_nodes::PairNode;
 use ferrode_math::{Aabb, Vec3};
 
 /// More than the rounding of a difference, a reciprocal and a product.
@@ -107,6 +108,31 @@ impl Probe {
         self.enter_bounds(b.min.to_array(), b.max.to_array(), limit)
     }
 
+    /// As [`enter_bounds`](Self::enter_bounds) for two boxes at once: where each is met, if it is.
+    #[inline(always)]
+    pub(crate) fn enter_pair(&self, pair: &PairNode, limit: f64) -> [Option<f64>; 2] {
+        if self.kind != Kind::Ray || self.flat {
+            return [0, 1].map(|l| {
+                let min = [0, 1, 2].map(|i| f64::from(pair.min[i][l]));
+                let max = [0, 1, 2].map(|i| f64::from(pair.max[i][l]));
+                self.enter_bounds(min, max, limit)
+            });
+        }
+        let (mut lo, mut hi) = ([0.0f64; 2], [limit; 2]);
+        for i in 0..3 {
+            let (o, inverse) = (self.origin[i], self.inverse[i]);
+            for l in 0..2 {
+                let s = (f64::from(pair.min[i][l]) - o) * inverse;
+                let t = (f64::from(pair.max[i][l]) - o) * inverse;
+                lo[l] = greater(lesser(s, t), lo[l]);
+                hi[l] = lesser(greater(s, t), hi[l]);
+            }
+        }
+        // Neither is negative unless the limit is.
+        let met = |l: usize| (lo[l] <= hi[l] + SLACK * (lo[l] + hi[l])).then_some(lo[l]);
+        [met(0), met(1)]
+    }
+
     #[inline(always)]
     pub(crate) fn enter(&self, b: &Box32, limit: f64) -> Option<f64> {
         self.enter_bounds(b.min.map(f64::from), b.max.map(f64::from), limit)
@@ -124,15 +150,10 @@ fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Of the children `c` and `c + 1`, which are met at `a` and `b`: the one to go on with; the other has to wait.
+/// Of the children `c` and `c + 1`, and where they are met: the one to go on with; the other has to wait.
 #[inline(always)]
-pub(crate) fn nearer(
-    c: u32,
-    a: Option<f64>,
-    b: Option<f64>,
-    pending: &mut Pending<(u32, f32)>,
-) -> Option<u32> {
-    match (a, b) {
+pub(crate) fn nearer(c: u32, at: [Option<f64>; 2], pending: &mut Pending<(u32, f32)>) -> Option<u32> {
+    match (at[0], at[1]) {
         (Some(a), Some(b)) => {
             let (near, far, at) = if b < a { (c + 1, c, a) } else { (c, c + 1, b) };
             pending.push((far, down(at)));

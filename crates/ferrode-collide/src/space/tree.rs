@@ -1,7 +1,8 @@
 //! A binary tree over boxes that stay: the triangles of a mesh.
 
 use super::f32_box::{Box32, Pending};
-use super::probe::Probe;
+use super::pair_nodes::{Node, Nodes};
+use super::probe::{Probe, nearer};
 use ferrode_math::Aabb;
 
 /// Most items in a leaf. Four triangles are tested as fast as the three more boxes that would tell them apart.
@@ -9,31 +10,14 @@ const LEAF: usize = 4;
 /// Planes that are tried as a split.
 const BINS: usize = 16;
 
-/// 32 bytes. Siblings lie side by side.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-struct Node {
-    min: [f32; 3],
-    /// The first of two children, or of the items of a leaf.
-    first: u32,
-    max: [f32; 3],
-    /// Items of a leaf; zero for an inner node.
-    count: u32,
-}
-
-impl Node {
-    #[inline(always)]
-    fn bounds(&self) -> Box32 {
-        Box32 { min: self.min, max: self.max }
-    }
-}
-
 /// A tree over bounded boxes, numbered as they were given; built once, by the surface area heuristic (Wald, *On fast
 /// construction of SAH-based bounding volume hierarchies*, 2007). Boxes are rounded outwards to single precision; with
 /// its list of items the tree takes 20 to 40 bytes a box.
 #[derive(Clone, Debug, Default)]
 pub struct AabbTree {
-    nodes: Vec<Node>,
+    /// Node 0 is the root, node 1 is never used. Links are the first of two children, or of the items of a leaf; tags
+    /// the number of items, zero for an inner node.
+    nodes: Nodes,
     items: Vec<u32>,
 }
 
@@ -46,24 +30,21 @@ impl AabbTree {
         if items.is_empty() {
             return tree;
         }
-        let empty = Node { min: [0.0; 3], first: 0, max: [0.0; 3], count: 0 };
-        tree.nodes.push(empty);
+        tree.nodes.add_pair();
         // Node and its part of the items.
-        let mut waiting = vec![(0usize, 0usize, items.len())];
+        let mut waiting = vec![(0u32, 0usize, items.len())];
         while let Some((node, start, end)) = waiting.pop() {
             let part = &mut items[start..end];
             let bounds = part.iter().fold(Box32::EMPTY, |b, i| b.union(&i.1));
-            let (first, count) = if part.len() <= LEAF {
-                (start, part.len())
+            let (link, tag) = if part.len() <= LEAF {
+                (start as u32, part.len() as u32)
             } else {
                 let middle = start + split(part);
-                let child = tree.nodes.len();
-                tree.nodes.extend([empty; 2]);
+                let child = tree.nodes.add_pair();
                 waiting.extend([(child, start, middle), (child + 1, middle, end)]);
                 (child, 0)
             };
-            tree.nodes[node] =
-                Node { min: bounds.min, first: first as u32, max: bounds.max, count: count as u32 };
+            tree.nodes.set(node, Node { bounds, link, tag });
         }
         tree.items = items.into_iter().map(|i| i.0).collect();
         tree.nodes.shrink_to_fit();
@@ -72,32 +53,33 @@ impl AabbTree {
 
     /// Bytes that the tree takes.
     pub fn size(&self) -> usize {
-        self.nodes.capacity() * size_of::<Node>() + self.items.capacity() * size_of::<u32>()
+        self.nodes.size() + self.items.capacity() * size_of::<u32>()
     }
 
-    fn items(&self, node: &Node) -> &[u32] {
-        &self.items[node.first as usize..(node.first + node.count) as usize]
+    fn items(&self, first: u32, count: u32) -> &[u32] {
+        &self.items[first as usize..(first + count) as usize]
     }
 
     /// Calls `found` with the number of each box that overlaps `aabb`, and a few that lie beside these.
     #[inline]
     pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(u32)) {
         let around = Box32::around(aabb);
-        let mut pending: Pending<u32> = Pending::new();
-        let Some(root) = self.nodes.first() else { return };
-        if root.bounds().overlaps(&around) {
-            pending.push(0);
+        if self.nodes.is_empty() || !self.nodes.bounds(0).overlaps(&around) {
+            return;
         }
+        let mut pending: Pending<u32> = Pending::new();
+        pending.push(0);
         while let Some(i) = pending.pop() {
-            let node = &self.nodes[i as usize];
-            if node.count > 0 {
-                self.items(node).iter().for_each(|&item| found(item));
-            } else if let [a, b] = &self.nodes[node.first as usize..node.first as usize + 2] {
-                if b.bounds().overlaps(&around) {
-                    pending.push(node.first + 1);
+            let (link, count) = self.nodes.numbers(i);
+            if count > 0 {
+                self.items(link, count).iter().for_each(|&item| found(item));
+            } else {
+                let [a, b] = self.nodes.pair(link).overlaps(&around);
+                if b {
+                    pending.push(link + 1);
                 }
-                if a.bounds().overlaps(&around) {
-                    pending.push(node.first);
+                if a {
+                    pending.push(link);
                 }
             }
         }
@@ -107,23 +89,18 @@ impl AabbTree {
     /// ones first as far as their boxes tell. `found` may lower the limit.
     #[inline]
     pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
-        let mut pending: Pending<(u32, f32)> = Pending::new();
-        let Some(root) = self.nodes.first() else { return };
-        if probe.enter(&root.bounds(), *limit).is_none() {
+        if self.nodes.is_empty() || probe.enter(&self.nodes.bounds(0), *limit).is_none() {
             return;
         }
+        let mut pending: Pending<(u32, f32)> = Pending::new();
         let mut i = 0;
         loop {
-            let node = &self.nodes[i as usize];
+            let (link, count) = self.nodes.numbers(i);
             let mut next = None;
-            if node.count > 0 {
-                self.items(node).iter().for_each(|&item| found(item, limit));
+            if count > 0 {
+                self.items(link, count).iter().for_each(|&item| found(item, limit));
             } else {
-                let c = node.first;
-                if let [left, right] = &self.nodes[c as usize..c as usize + 2] {
-                    let (a, b) = (probe.enter(&left.bounds(), *limit), probe.enter(&right.bounds(), *limit));
-                    next = super::probe::nearer(c, a, b, &mut pending);
-                }
+                next = nearer(link, probe.enter_pair(self.nodes.pair(link), *limit), &mut pending);
             }
             while next.is_none() {
                 let Some((waiting, at)) = pending.pop() else { return };
