@@ -101,6 +101,12 @@ fn boxes_are_libodes() {
     for case in record.list("cases") {
         for (side, key) in [("a", "aabb_a"), ("b", "aabb_b")] {
             let (Some((shape, frame)), recorded) = (record.geom(&case[side]), &case[key]) else { continue };
+            // Libode's box of a turned heightfield does not hold it, and that of a repeated one has no height.
+            if let Shape::Heightfield(field) = &shape
+                && (field.is_wrapped() || frame.rotation != ferrode_math::Mat3::IDENTITY)
+            {
+                continue;
+            }
             let aabb = shape.aabb_in(&frame);
             for i in 0..3 {
                 for (got, want) in

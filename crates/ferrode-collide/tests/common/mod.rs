@@ -57,6 +57,13 @@ impl Record {
             .collect();
         let (columns, rows) = (n("width_samples") as usize, n("depth_samples") as usize);
         let made = Heightfield::new(n("width"), n("depth"), columns, rows, heights, n("thickness")).unwrap();
+        let made = match field["bounds_set"].as_array() {
+            Some(b) => made.with_bounds(
+                number(&b[0]) * n("scale") + n("offset"),
+                number(&b[1]) * n("scale") + n("offset"),
+            ),
+            None => made,
+        };
         if n("wrap") == 1.0 { made.wrapped() } else { made }
     }
 
