@@ -222,6 +222,10 @@ fn odd_bodies_have_sound_contacts() {
         vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
     );
     shapes.push(spread.unwrap().into());
+    let field =
+        Heightfield::new(2.0, 2.0, 3, 3, vec![0.0, 0.1, 0.2, 0.0, 0.5, -0.2, 0.0, 0.1, 0.3], 1.0).unwrap();
+    shapes.push(field.clone().into());
+    shapes.push(field.wrapped().into());
     let poses = [
         Pose::IDENTITY,
         Pose::from_position(Vec3::new(0.5, 0.0, 0.0)),
@@ -249,6 +253,54 @@ fn odd_bodies_have_sound_contacts() {
                             "{a:?} {b:?} {c:?}"
                         );
                     }
+                }
+                let _ = distance((a, pa), (b, pb));
+            }
+        }
+    }
+}
+
+/// Poses that are no numbers: no panic, and no contacts that are no numbers.
+#[test]
+fn bad_poses_have_no_contacts() {
+    let field = Heightfield::new(2.0, 2.0, 3, 3, vec![0.1; 9], 1.0).unwrap();
+    let points = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    let shapes: Vec<Shape> = vec![
+        Sphere::new(1.0).unwrap().into(),
+        Cuboid::new(Vec3::splat(1.0)).unwrap().into(),
+        Capsule::new(1.0, 1.0).unwrap().into(),
+        Cylinder::new(1.0, 1.0).unwrap().into(),
+        Cone::new(1.0, 1.0).unwrap().into(),
+        Ellipsoid::new(Vec3::splat(1.0)).unwrap().into(),
+        Plane::new(Vec3::Z, 0.0).unwrap().into(),
+        Ray::new(1.0).unwrap().into(),
+        Convex::from_points(&points).unwrap().into(),
+        TriMesh::new(points.to_vec(), triangles).unwrap().into(),
+        field.clone().into(),
+        field.wrapped().into(),
+    ];
+    let nan = f64::NAN;
+    let poses = [
+        Pose::from_position(Vec3::new(nan, 0.0, 0.0)),
+        Pose::from_position(Vec3::new(0.0, f64::INFINITY, 0.0)),
+        Pose::new(Vec3::ZERO, Quat::new(nan, 0.0, 0.0, 0.0)),
+        Pose::new(Vec3::ZERO, Quat::new(0.0, 0.0, 0.0, 0.0)),
+        Pose::from_position(Vec3::splat(1e308)),
+        Pose::IDENTITY,
+    ];
+    let mut out = Vec::new();
+    for a in &shapes {
+        for b in &shapes {
+            for (pa, pb) in poses.iter().flat_map(|p| poses.iter().map(move |q| (p, q))) {
+                out.clear();
+                collide((a, pa), (b, pb), CollideOptions::new(8), &mut out);
+                for c in &out {
+                    let p = c.point;
+                    assert!(
+                        p.depth.is_finite() && p.normal.is_finite() && p.position.is_finite(),
+                        "{a:?} {pa:?}\n{b:?} {pb:?}\n{c:?}"
+                    );
                 }
                 let _ = distance((a, pa), (b, pb));
             }

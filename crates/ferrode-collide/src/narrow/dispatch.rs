@@ -241,6 +241,23 @@ fn index(kind: ShapeKind) -> usize {
     kind as usize
 }
 
+/// Drops contacts that are no numbers, which only poses that are none, or nearly overflow, can cause; and lifts depths
+/// that rounding put below zero.
+fn keep_sound(contacts: &mut Contacts<'_>) {
+    let list = contacts.added();
+    let mut kept = 0;
+    for i in 0..list.len() {
+        let mut c = list[i];
+        let p = &mut c.point;
+        if p.depth.is_finite() && p.normal.is_finite() && p.position.is_finite() {
+            p.depth = p.depth.max(0.0);
+            list[kept] = c;
+            kept += 1;
+        }
+    }
+    contacts.truncate(kept);
+}
+
 /// Whether shapes of these kinds can touch at all: two planes, or two rays, cannot.
 pub fn collides(a: ShapeKind, b: ShapeKind) -> bool {
     PAIRS[index(a)][index(b)].is_some()
@@ -271,6 +288,7 @@ pub fn collide_frames(
     }
     let mut contacts = Contacts::new(out, options);
     collider(a.0, a.1, b.0, b.1, &mut contacts);
+    keep_sound(&mut contacts);
     contacts.len()
 }
 
