@@ -6,6 +6,19 @@ use ferrode_collide::{CollideOptions, GeomContact, GeomKey, Item};
 use ferrode_dynamics::{Body, Contact, Surface, SurfaceMode};
 use ferrode_math::{ContactPoint, Vec3};
 
+/// Where [`World::step`] takes its contacts from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ContactSource {
+    /// [`collide::narrow::steady`](crate::collide::narrow::steady()): as ODE's, but where those leave a body without hold or
+    /// catch it at the edges within a mesh. A capsule that lies on a box has two contacts instead of one, a ball on a
+    /// mesh one instead of several.
+    #[default]
+    Steady,
+    /// [`collide::narrow::collide`](crate::collide::narrow::collide()): ODE's contacts, as `dCollide` gives them.
+    Ode,
+}
+
 /// One side of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -71,7 +84,11 @@ impl World {
             let Some(surface) = self.pair_surface(&info_a, &info_b) else { continue };
             scratch.found.clear();
             let options = CollideOptions::new(self.max_contacts);
-            if self.colliders.geom_contacts(*a, *b, options, &mut scratch.found) == 0 {
+            let found = match self.contact_source {
+                ContactSource::Steady => self.colliders.steady_contacts(*a, *b, options, &mut scratch.found),
+                ContactSource::Ode => self.colliders.geom_contacts(*a, *b, options, &mut scratch.found),
+            };
+            if found == 0 {
                 continue;
             }
             scratch.touching.push(slots);

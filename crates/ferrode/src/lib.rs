@@ -24,13 +24,14 @@ pub use ferrode_dynamics as dynamics;
 pub use ferrode_math as math;
 
 pub use build::{BodyBuilder, mass_of};
-pub use contacts::{ContactOwner, TouchingContact};
+pub use contacts::{ContactOwner, ContactSource, TouchingContact};
 pub use energy::Energy;
 pub use error::Error;
 pub use events::ContactEvent;
 pub use ferrode_collide::{
     Capsule, ClosestPoint, CollideOptions, Colliders, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Geom,
-    GeomContact, GeomKey, Plane, Ray, RayHit, Shape, ShapeCastHit, SpaceKey, SpaceKind, Sphere, TriMesh,
+    GeomContact, GeomKey, Heightfield, Plane, Ray, RayHit, Shape, ShapeCastHit, SpaceKey, SpaceKind, Sphere,
+    TriMesh,
 };
 pub use ferrode_dynamics::{
     AMotor, AMotorMode, AutoDisable, AxisFrame, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping,

@@ -1,6 +1,6 @@
 //! The world: bodies and joints, the geoms on them, and the rules by which they touch.
 
-use crate::{Combine, CombineRules, ContactEvent, Error, GeomInfo, Material, TouchingContact};
+use crate::{Combine, CombineRules, ContactEvent, ContactSource, Error, GeomInfo, Material, TouchingContact};
 use core::ops::{Deref, DerefMut};
 use ferrode_collide::{Colliders, GeomContact, GeomKey, SpaceKey, SpaceKind};
 use ferrode_dynamics::{BodyKey, GroupKey, JointKey, Stepper, Surface};
@@ -31,6 +31,7 @@ pub struct World {
     /// How [`World::step`] finds the constraint forces. [`Stepper::Quick`] unless set.
     pub stepper: Stepper,
     pub(crate) max_contacts: u16,
+    pub(crate) contact_source: ContactSource,
     pub(crate) contact_group: GroupKey,
     pub(crate) contacts: Vec<TouchingContact>,
     pub(crate) events: Vec<ContactEvent>,
@@ -107,6 +108,7 @@ impl World {
             joined_collide: HashMap::new(),
             stepper: Stepper::default(),
             max_contacts: 10,
+            contact_source: ContactSource::default(),
             contact_group,
             contacts: Vec::new(),
             events: Vec::new(),
@@ -254,6 +256,16 @@ impl World {
     /// Sets the most contacts that a pair of geoms gets.
     pub fn set_max_contacts(&mut self, max_contacts: u16) {
         self.max_contacts = max_contacts.max(1);
+    }
+
+    /// Where [`World::step`] takes its contacts from; [`ContactSource::Steady`] unless set.
+    pub fn contact_source(&self) -> ContactSource {
+        self.contact_source
+    }
+
+    /// Sets where [`World::step`] takes its contacts from.
+    pub fn set_contact_source(&mut self, source: ContactSource) {
+        self.contact_source = source;
     }
 
     /// Simulated time in seconds.

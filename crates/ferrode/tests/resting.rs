@@ -5,7 +5,7 @@
 //! slower than 1 mm/s and within 5 mm and one degree of where it was put. Each run prints its table.
 
 use ferrode::prelude::*;
-use ferrode::{Cone, Convex, Ellipsoid, TriMesh};
+use ferrode::{Cone, Convex, Ellipsoid, Heightfield, TriMesh};
 
 const SECONDS: f64 = 10.0;
 const SPEED: f64 = 1e-3;
@@ -24,6 +24,7 @@ struct Top {
 struct Base {
     name: &'static str,
     shape: Shape,
+    rotation: Quat,
     height: f64,
 }
 
@@ -101,7 +102,7 @@ fn tops() -> Result<Vec<Top>, Error> {
 }
 
 fn bases() -> Result<Vec<Base>, Error> {
-    let base = |name, shape, height| Base { name, shape, height };
+    let base = |name, shape, height| Base { name, shape, rotation: Quat::IDENTITY, height };
     let slab: Vec<Vec3> = (0..8_u8)
         .map(|i| Vec3::new(f64::from(i & 1) - 0.5, f64::from(i >> 1 & 1) - 0.5, f64::from(i >> 2) - 1.0))
         .collect();
@@ -109,6 +110,12 @@ fn bases() -> Result<Vec<Base>, Error> {
         base("plane", Plane::new(Vec3::Z, 0.0)?.into(), 0.0),
         base("box", Cuboid::new(Vec3::splat(1.0))?.into(), -0.5),
         base("mesh", box_mesh(Vec3::splat(1.0), 7)?.into(), -0.5),
+        Base {
+            name: "field",
+            shape: Heightfield::new(2.0, 2.0, 21, 21, vec![0.0; 21 * 21], 1.0)?.into(),
+            rotation: Heightfield::z_up(),
+            height: 0.0,
+        },
         base("cylinder", Cylinder::new(0.6, 1.0)?.into(), -0.5),
         base("convex", Convex::from_points(&slab)?.into(), 0.0),
     ])
@@ -134,7 +141,7 @@ fn lay_down(top: &Top, base: &Base, stepper: Stepper, h: f64, friction: f64) -> 
     world.set_gravity(Vec3::new(0.0, 0.0, -9.81))?;
     world.set_contact_surface_layer(1e-3)?;
     world.set_default_material(Material::with_friction(friction))?;
-    world.add_static(base.shape.clone(), Pose::from_position(Vec3::new(0.0, 0.0, base.height)))?;
+    world.add_static(base.shape.clone(), Pose::new(Vec3::new(0.0, 0.0, base.height), base.rotation))?;
     let start = Vec3::new(0.03, 0.02, top.height + 1e-3);
     let turn = Quat::from_axis_angle(Vec3::Z, 0.3) * top.rotation;
     let body = BodyBuilder::new().at(start).rotated(turn).with_shape(top.shape.clone(), 1000.0);
@@ -155,12 +162,12 @@ fn lay_down(top: &Top, base: &Base, stepper: Stepper, h: f64, friction: f64) -> 
     })
 }
 
-/// Lays every body on every base and prints how each fares; the failures.
-fn table(stepper: Stepper, h: f64, friction: f64) -> Result<Vec<String>, Error> {
+/// Lays every body picked on every base and prints how each fares; the failures.
+fn table(stepper: Stepper, h: f64, friction: f64, pick: impl Fn(&str) -> bool) -> Result<Vec<String>, Error> {
     let mut failures = Vec::new();
     println!("{stepper:?}, h = {h}, friction {friction}: speed mm/s, drift mm, turn °, contacts");
     for base in &bases()? {
-        for top in &tops()? {
+        for top in tops()?.iter().filter(|top| pick(top.name)) {
             let o = lay_down(top, base, stepper, h, friction)?;
             let line = format!(
                 "{:18} on {:9} {:9.2e} {:7.3} {:7.3} {:3}{}",
@@ -183,21 +190,22 @@ fn table(stepper: Stepper, h: f64, friction: f64) -> Result<Vec<String>, Error> 
 
 #[test]
 fn all_lies_still_under_direct() -> Result<(), Error> {
-    let failures = table(Stepper::Direct, 0.01, 0.5)?;
+    let failures = table(Stepper::Direct, 0.01, 0.5, |_| true)?;
     assert!(failures.is_empty(), "{failures:#?}");
     Ok(())
 }
 
 #[test]
 fn all_lies_still_under_quick() -> Result<(), Error> {
-    let failures = table(Stepper::Quick, 0.01, 0.5)?;
+    let failures = table(Stepper::Quick, 0.01, 0.5, |_| true)?;
     assert!(failures.is_empty(), "{failures:#?}");
     Ok(())
 }
 
 #[test]
 fn all_lies_still_with_a_rough_surface_and_a_millisecond() -> Result<(), Error> {
-    let failures = table(Stepper::Quick, 0.001, 1.0)?;
+    let pick = |name: &str| ["box", "cylinder lying", "capsule lying", "icosahedron"].contains(&name);
+    let failures = table(Stepper::Quick, 0.001, 1.0, pick)?;
     assert!(failures.is_empty(), "{failures:#?}");
     Ok(())
 }

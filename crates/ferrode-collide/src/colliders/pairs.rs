@@ -195,6 +195,21 @@ impl Colliders {
         narrow::collide_frames((&ga.shape, &ga.frame), (&gb.shape, &gb.frame), options, out)
     }
 
+    /// As [`geom_contacts`](Self::geom_contacts), by [`narrow::steady`]: contacts on which bodies lie still.
+    pub fn steady_contacts(
+        &self,
+        a: GeomKey,
+        b: GeomKey,
+        options: CollideOptions,
+        out: &mut Vec<GeomContact>,
+    ) -> usize {
+        let (Some(ga), Some(gb)) = (self.geom(a), self.geom(b)) else { return 0 };
+        if a == b || (ga.body.is_some() && ga.body == gb.body) {
+            return 0;
+        }
+        narrow::steady_frames((&ga.shape, &ga.frame), (&gb.shape, &gb.frame), options, out)
+    }
+
     fn contacts_with(
         &self,
         a: Item,

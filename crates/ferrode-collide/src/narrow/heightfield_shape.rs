@@ -31,18 +31,18 @@ pub fn heightfield_shape(field: &Heightfield, ff: &Frame, shape: &Shape, fs: &Fr
 }
 
 /// The grid corners under a box, both ends included.
-struct Zone {
-    x: [i64; 2],
-    z: [i64; 2],
-    low: f64,
-    high: f64,
+pub(super) struct Zone {
+    pub x: [i64; 2],
+    pub z: [i64; 2],
+    pub low: f64,
+    pub high: f64,
 }
 
 /// Beyond this many cells a shape is taken to lie over all of the field.
 const MOST_CELLS: f64 = 1e9;
 
 impl Zone {
-    fn under(field: &Heightfield, aabb: &Aabb) -> Option<Self> {
+    pub fn under(field: &Heightfield, aabb: &Aabb) -> Option<Self> {
         let (sx, sz) = field.cell();
         let (w, d) = (0.5 * field.width(), 0.5 * field.depth());
         let wrap = field.is_wrapped();

@@ -238,9 +238,10 @@ pub(super) fn add_face_contacts(a: &Body<'_>, b: &Body<'_>, n: Vec3, out: &mut C
     // The lowest corner need not be one of the face that looks most downward.
     let lowest = a.support(-n) - n * a.margin;
     let depth = n.dot(face.points[0] - lowest);
+    // Over the edge between two faces it is over both, whatever the rounding.
     let over = (0..face.count).all(|i| {
         let (p, q) = (face.points[i], face.points[(i + 1) % face.count]);
-        n.cross(q - p).dot(lowest - p) >= 0.0
+        n.cross(q - p).dot(lowest - p) >= -1e-9 * (q - p).length_squared()
     });
     let enough = depth - 1e-6 * (a.reach() + b.reach());
     if over && depth >= 0.0 && (found.is_empty() || found.list[found.deepest()].1 < enough) {

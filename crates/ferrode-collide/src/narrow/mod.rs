@@ -5,6 +5,7 @@
 //! rows decides what `Quick` computes.
 
 mod bodies;
+mod body_heightfield;
 mod body_plane;
 mod body_trimesh;
 mod capsule_capsule;
@@ -43,12 +44,14 @@ mod sphere_cuboid;
 mod sphere_plane;
 mod sphere_sphere;
 mod sphere_trimesh;
+mod steady;
 mod support;
 mod triangle;
 mod trimesh_plane;
 mod trimesh_trimesh;
 
 pub use bodies::convex_bodies;
+pub use body_heightfield::body_heightfield;
 pub use body_plane::body_plane;
 pub use body_trimesh::body_trimesh;
 pub use capsule_capsule::capsule_capsule;
@@ -81,5 +84,6 @@ pub use sphere_cuboid::sphere_cuboid;
 pub use sphere_plane::sphere_plane;
 pub use sphere_sphere::{sphere_sphere, spheres};
 pub use sphere_trimesh::sphere_trimesh;
+pub use steady::{steady, steady_frames};
 pub use trimesh_plane::trimesh_plane;
 pub use trimesh_trimesh::trimesh_trimesh;

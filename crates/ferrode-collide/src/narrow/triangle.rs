@@ -36,6 +36,11 @@ impl Facet {
         q
     }
 
+    /// A length like the triangle's.
+    fn scale(&self) -> f64 {
+        (self.corners[1] - self.corners[0]).abs_max() + (self.corners[2] - self.corners[0]).abs_max()
+    }
+
     /// The unit direction in the plane that leads out over edge `e`.
     pub fn outward(&self, e: usize) -> Vec3 {
         (self.corners[(e + 1) % 3] - self.corners[e]).cross(self.normal).normalized_or(Vec3::ZERO)
@@ -58,10 +63,13 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     let triangle = Body::triangle(facet.corners);
     let first = out.len();
     match touch(body, &triangle) {
-        Some(t) if t.normal.dot(n) > 1.0 - SAME => {
+        // Beyond an edge within the surface the neighbour bears the body.
+        Some(t) if t.normal.dot(n) > 1.0 - SAME && !at_inner_edge(facet, &t) => {
             add_manifold(body, &triangle, &Touch { normal: n, ..t }, Vec3::ZERO, out);
         }
-        Some(t) if allowed(facet, &t) => add_manifold(body, &triangle, &t, Vec3::ZERO, out),
+        Some(t) if t.normal.dot(n) <= 1.0 - SAME && allowed(facet, &t) => {
+            add_manifold(body, &triangle, &t, Vec3::ZERO, out)
+        }
         Some(_) => add_face_contacts(body, &triangle, n, out),
         None => add_hidden_contact(body, middle, facet, out),
     }
@@ -112,14 +120,22 @@ fn nearer_elsewhere(body: &Body<'_>, facet: &Facet, middle: Vec3, c: &GeomContac
     })
 }
 
+/// Whether a touch is at an edge that the surface goes on beyond without a bend outward.
+fn at_inner_edge(facet: &Facet, t: &Touch) -> bool {
+    let scale = facet.scale();
+    (0..3).any(|e| {
+        facet.neighbours[e] == Neighbour::FlatOrConcave
+            && facet.outward(e).dot(facet.corners[e] - t.b) <= 1e-6 * scale
+    })
+}
+
 /// Whether the normal of a touch is one that the surface has at that point.
 fn allowed(facet: &Facet, t: &Touch) -> bool {
     let along = t.normal.dot(facet.normal);
     if along < -SAME {
         return false;
     }
-    let scale =
-        (facet.corners[1] - facet.corners[0]).abs_max() + (facet.corners[2] - facet.corners[0]).abs_max();
+    let scale = facet.scale();
     for e in 0..3 {
         let out = facet.outward(e);
         // How far inside the edge the point is.

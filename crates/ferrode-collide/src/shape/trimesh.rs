@@ -37,6 +37,16 @@ pub enum Neighbour {
     Convex(Vec3),
 }
 
+impl Neighbour {
+    /// What a triangle with the given normal has beyond its edge from `start` to `end`: a triangle with the third corner
+    /// `apex` and the normal `other`.
+    pub(crate) fn across(start: Vec3, end: Vec3, apex: Vec3, normal: Vec3, other: Vec3) -> Self {
+        let along = (end - start).normalized_or(Vec3::X);
+        let across = (apex - start) - along * along.dot(apex - start);
+        if normal.dot(across) < -FLAT * across.length() { Self::Convex(other) } else { Self::FlatOrConcave }
+    }
+}
+
 impl PartialEq for TriMesh {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.data, &other.data)
@@ -212,14 +222,9 @@ fn neighbours(vertices: &[Vec3], triangles: &[[u32; 3]], normals: &[Vec3]) -> Ve
             let corners = triangles[t as usize].map(|v| vertices[v as usize]);
             let apex = vertices[triangles[other as usize][(usize::from(f) + 2) % 3] as usize];
             let start = corners[usize::from(e)];
-            let along = (corners[(usize::from(e) + 1) % 3] - start).normalized_or(Vec3::X);
-            let across = (apex - start) - along * along.dot(apex - start);
-            let height = normals[t as usize].dot(across);
-            found[t as usize][usize::from(e)] = if height < -FLAT * across.length() {
-                Neighbour::Convex(normals[other as usize])
-            } else {
-                Neighbour::FlatOrConcave
-            };
+            let end = corners[(usize::from(e) + 1) % 3];
+            found[t as usize][usize::from(e)] =
+                Neighbour::across(start, end, apex, normals[t as usize], normals[other as usize]);
         }
     }
     found
