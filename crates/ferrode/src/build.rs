@@ -132,7 +132,7 @@ impl BodyBuilder {
 /// ```
 ///
 /// # Errors
-/// [`Error::NoVolume`] for planes and rays; [`Error::Dynamics`] for a density that is not positive, or a mesh that is
+/// [`Error::NoVolume`] for planes, rays and heightfields; [`Error::Dynamics`] for a density that is not positive, or a mesh that is
 /// open or inside out.
 pub fn mass_of(shape: &Shape, density: f64) -> Result<Mass, Error> {
     Ok(match shape {
@@ -150,6 +150,7 @@ pub fn mass_of(shape: &Shape, density: f64) -> Result<Mass, Error> {
             Mass::trimesh(density, s.points(), &triangles)?
         }
         Shape::TriMesh(s) => Mass::trimesh(density, s.vertices(), s.triangles())?,
+        Shape::Heightfield(_) => return Err(Error::NoVolume { shape: "heightfield" }),
         Shape::Plane(_) => return Err(Error::NoVolume { shape: "plane" }),
         Shape::Ray(_) => return Err(Error::NoVolume { shape: "ray" }),
         _ => return Err(Error::NoVolume { shape: "shape of this kind" }),

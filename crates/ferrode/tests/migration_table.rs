@@ -118,6 +118,7 @@ fn every_method_that_the_table_names_exists() {
         known, "Geom", Geom:
         aabb, category_bits, collide_bits, is_enabled, pose
     );
+    exist!(known, "Heightfield", Heightfield: new, with_bounds, wrapped);
     exist!(
         known, "JointMut<AMotor>", JointMut<AMotor>:
         add_torques, set_angle, set_axis, set_axis_count, set_limits_of, set_mode, set_motor_of
