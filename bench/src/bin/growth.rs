@@ -1,15 +1,18 @@
 //! How the time of one exact step grows with the size of the mechanism, beside libode's `dWorldStep`.
 //!
 //! ```text
-//! cargo run --release --bin growth -- [--largest N] [--case WORD] [--reps N]
+//! cargo run --release --bin growth -- [--smallest N] [--largest N] [--case WORD] [--reps N]
 //! ```
 //!
 //! Contacts are found by Ferrode and given to both engines. Timed are the making of contact joints, the step, and removing them. Printed per
-//! size: median seconds of a step, factorisations per step, time per factorisation, blocks of the factor, residual and a
+//! size: median processor time of a step, factorisations per step, time per factorisation, blocks of the factor, residual and a
 //! figure of quality; then the exponent of the time per factorisation, fitted over the larger half of the sizes.
 #![deny(unsafe_code)]
 #![allow(dead_code)]
 
+#[allow(unsafe_code)]
+#[path = "../cpu.rs"]
+mod cpu;
 #[path = "../engine.rs"]
 mod engine;
 #[allow(unsafe_code)]
@@ -20,7 +23,6 @@ use engine::{ContactLine, Engine, Ferrode, Method, Mu};
 use ferrode_collide::{CollideOptions, Cuboid, Plane, Shape, narrow};
 use ferrode_math::{Pose, Quat, Vec3, real};
 use ode::Ode;
-use std::time::Instant;
 
 /// A family of scenes.
 struct Case {
@@ -293,9 +295,9 @@ fn run(case: &Case, n: usize, method: Method, figures: &mut Figures) -> (Ferrode
     let mut lists = Vec::new();
     for step in 0..case.steps[0] + case.steps[1] {
         let list = contacts(case.sides, &engine.poses());
-        let start = Instant::now();
+        let start = cpu::seconds();
         engine.step(method, case.h, &list, Mu(0.5));
-        let seconds = start.elapsed().as_secs_f64();
+        let seconds = cpu::seconds() - start;
         lists.push(list);
         if step < case.steps[0] {
             continue;
@@ -318,6 +320,7 @@ fn main() {
     let words: Vec<String> = std::env::args().collect();
     let value = |name: &str| words.iter().position(|w| w == name).and_then(|i| words.get(i + 1)).cloned();
     let largest: usize = value("--largest").and_then(|v| v.parse().ok()).unwrap_or(usize::MAX);
+    let smallest: usize = value("--smallest").and_then(|v| v.parse().ok()).unwrap_or(0);
     let reps: usize = value("--reps").and_then(|v| v.parse().ok()).unwrap_or(3);
     let wanted = value("--case").unwrap_or_default();
     println!(
@@ -325,7 +328,7 @@ fn main() {
     );
     for case in CASES.iter().filter(|c| c.name.contains(&wanted)) {
         let mut points = Vec::new();
-        for n in case.sizes.iter().copied().filter(|n| *n <= largest) {
+        for n in case.sizes.iter().copied().filter(|n| (smallest..=largest).contains(n)) {
             let (mut figures, mut quick) = (Figures::default(), Figures::default());
             let (mut theirs, mut theirs_quick) = (Vec::new(), Vec::new());
             let mut error = 0.0;
@@ -335,10 +338,10 @@ fn main() {
                 let ode = |method: Method, times: &mut Vec<f64>| {
                     let mut engine: Ode = new(case, n);
                     for (step, list) in lists.iter().enumerate() {
-                        let start = Instant::now();
+                        let start = cpu::seconds();
                         engine.step(method, case.h, list, Mu(0.5));
                         if step >= case.steps[0] {
-                            times.push(start.elapsed().as_secs_f64());
+                            times.push(cpu::seconds() - start);
                         }
                     }
                 };
@@ -378,7 +381,7 @@ fn main() {
 
 /// The slope of log time over log size.
 fn exponent(points: &[(f64, f64)]) -> f64 {
-    let logs: Vec<(f64, f64)> = points.iter().map(|(n, t)| (real::ln(*n), real::ln(*t))).collect();
+    let logs: Vec<(f64, f64)> = points.iter().map(|(n, t)| (real::log(*n), real::log(*t))).collect();
     let k = logs.len() as f64;
     let (mx, my) = (logs.iter().map(|p| p.0).sum::<f64>() / k, logs.iter().map(|p| p.1).sum::<f64>() / k);
     let (xy, xx) =

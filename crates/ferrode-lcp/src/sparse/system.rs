@@ -24,7 +24,7 @@ pub(crate) const LEAST_SIGMA: f64 = 1e-10;
 /// Refinement ends when the error that is to be expected is below this part of the largest force: while rows are still being
 /// sorted, and at the end.
 const ROUGH: f64 = 1e-12;
-const FINE: f64 = 1e-16;
+const FINE: f64 = 1e-15;
 const MOST_CORRECTIONS: usize = 8;
 
 /// A problem's rows with what is computed for each, and the unknowns.
@@ -45,6 +45,9 @@ pub(crate) struct System {
     error: Vec<f64>,
     pub dy: Vec<Six>,
     pub factor: Factor,
+    /// Largest change of a force in the last correction, and its ratio to the one before.
+    change: f64,
+    rate: f64,
     /// Per row what it weighs in `H`: `1 / S`, or 0 for a row whose force is given.
     pub weight: Vec<f64>,
     /// Whether some row's CFM was raised.
@@ -185,24 +188,10 @@ impl System {
                 largest_given = lambda.abs();
             }
         }
-        let (mut before, mut largest) = (f64::INFINITY, 0.0);
-        for step in 0..MOST_CORRECTIONS {
-            let change = self.correct(blocks, jacobian, state, shape, step == 0);
-            if step == 0 {
-                largest = if change > largest_given { change } else { largest_given };
-            } else {
-                // The error shrinks by the same factor each time; it is below rounding when the change no longer falls.
-                let rate = change / before;
-                let falls = rate < 0.5;
-                if !falls || change * rate <= ROUGH * largest {
-                    break;
-                }
-            }
-            if change == 0.0 {
-                break;
-            }
-            before = change;
-        }
+        let first = self.correct(blocks, jacobian, state, shape, true);
+        let largest = if first > largest_given { first } else { largest_given };
+        (self.change, self.rate) = (first, 1.0);
+        self.refine(blocks, jacobian, state, shape, ROUGH * largest);
         largest
     }
 
@@ -215,17 +204,30 @@ impl System {
         shape: &Symbolic,
         largest: f64,
     ) {
-        let mut before = f64::INFINITY;
+        self.refine(blocks, jacobian, state, shape, FINE * largest);
+    }
+
+    /// Corrects until the error to be expected, which shrinks by the same factor each time, is below `goal`, or rounding stops it.
+    fn refine(
+        &mut self,
+        blocks: &[RowBlock],
+        jacobian: &[ScaledRow],
+        state: &[RowState],
+        shape: &Symbolic,
+        goal: f64,
+    ) {
         for _ in 0..MOST_CORRECTIONS {
-            let change = self.correct(blocks, jacobian, state, shape, false);
-            let falls = change < 0.5 * before;
-            if !falls
-                || change <= FINE * largest
-                || change * (change / before) <= FINE * largest && before < f64::INFINITY
-            {
+            if self.change * self.rate <= goal {
                 break;
             }
-            before = change;
+            let change = self.correct(blocks, jacobian, state, shape, false);
+            self.rate = change / self.change;
+            self.change = change;
+            let falls = self.rate < 0.5;
+            if !falls {
+                self.rate = 0.0;
+                break;
+            }
         }
     }
 
