@@ -1,11 +1,11 @@
 //! Where a moving shape first touches another.
 
 use super::distance::{body_distance, plane_distance};
-use super::support::Body;
+use super::support::{Body, difference};
 use super::triangle::bounds;
 use crate::space::Probe;
-use crate::{Frame, Plane, Shape, TriMesh};
-use ferrode_math::Vec3;
+use crate::{Frame, Heightfield, Plane, Shape, TriMesh};
+use ferrode_math::{Aabb, Vec3};
 
 /// Where a moving shape met another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,27 @@ pub struct CastHit {
     pub depth: f64,
 }
 
+/// The first hit with a triangle of a field, in whose coordinates the body is.
+fn body_field(body: &Body<'_>, path: Vec3, field: &Heightfield) -> Option<CastHit> {
+    let start = bounds(body);
+    let end = Aabb::new(start.min + path, start.max + path);
+    let mut best: Option<CastHit> = None;
+    field.triangles_in(&start.union(&end), |corners| {
+        let hit = bodies(body, path, &Body::triangle(corners));
+        if hit.is_some_and(|h| h.before(best)) {
+            best = hit;
+        }
+    });
+    best
+}
+
 impl CastHit {
+    /// From the coordinates of a frame to the world.
+    fn placed(self, frame: &Frame) -> Self {
+        let position = frame.point_to_world(self.position);
+        Self { position, normal: frame.vector_to_world(self.normal), ..self }
+    }
+
     /// Whether this hit is earlier than the other, or deeper at the start.
     fn before(&self, other: Option<Self>) -> bool {
         other.is_none_or(|b| {
@@ -29,8 +49,9 @@ impl CastHit {
     }
 }
 
-/// Where shape `a`, moving along `path` without turning, first touches `b`, to a millionth of the smaller one's size.
-/// `None` if it does not, for rays, for two planes, and for a path that is not finite.
+/// Where shape `a`, moving along `path` without turning, first touches `b`, to a few millionths of their sizes.
+/// `None` if it does not, for rays, for two planes, for a heightfield with a plane or another heightfield, and for a path
+/// that is not finite. Meshes and heightfields are their surfaces.
 pub fn shape_cast(a: (&Shape, &Frame), path: Vec3, b: (&Shape, &Frame)) -> Option<CastHit> {
     if !path.is_finite() {
         return None;
@@ -43,7 +64,26 @@ pub fn shape_cast(a: (&Shape, &Frame), path: Vec3, b: (&Shape, &Frame)) -> Optio
     };
     match (sa, sb) {
         (Shape::Plane(_), Shape::Plane(_)) => None,
-        (Shape::Plane(_), _) => turned(),
+        (Shape::Heightfield(_), Shape::Plane(_) | Shape::Heightfield(_)) => None,
+        (Shape::Plane(_), Shape::Heightfield(_)) => None,
+        (Shape::Plane(_) | Shape::Heightfield(_), _) => turned(),
+        (Shape::TriMesh(mesh), Shape::Heightfield(field)) => {
+            let path = fb.vector_to_local(path);
+            let mut best: Option<CastHit> = None;
+            for i in 0..mesh.triangles().len() as u32 {
+                let corners = mesh.corners(i).map(|p| fb.point_to_local(fa.point_to_world(p)));
+                let hit = body_field(&Body::triangle(corners), path, field);
+                if hit.is_some_and(|h| h.before(best)) {
+                    best = hit;
+                }
+            }
+            best.map(|hit| hit.placed(fb))
+        }
+        (_, Shape::Heightfield(field)) => {
+            let local = Frame::new(fb.point_to_local(fa.position), fb.rotation.transpose() * fa.rotation);
+            let body = Body::of(sa, &local, Vec3::ZERO)?;
+            body_field(&body, fb.vector_to_local(path), field).map(|hit| hit.placed(fb))
+        }
         (Shape::TriMesh(mesh), Shape::Plane(plane)) => mesh_plane(mesh, fa, path, plane),
         (_, Shape::Plane(plane)) => {
             let d = plane_distance(plane, &Body::of(sa, fa, Vec3::ZERO)?);
@@ -76,7 +116,7 @@ pub fn shape_cast(a: (&Shape, &Frame), path: Vec3, b: (&Shape, &Frame)) -> Optio
 /// The hit of what is `distance` away along `normal`, if that does not change on the way.
 fn linear(distance: f64, position: Vec3, normal: Vec3, path: Vec3) -> Option<CastHit> {
     if distance <= 0.0 {
-        return Some(CastHit { fraction: 0.0, position, normal, depth: -distance });
+        return Some(CastHit { fraction: 0.0, position, normal, depth: 0.0 - distance });
     }
     let approach = -normal.dot(path);
     let fraction = distance / approach;
@@ -120,11 +160,12 @@ fn body_mesh(body: &Body<'_>, path: Vec3, mesh: &TriMesh, frame: &Frame, mut lim
             best = Some(hit);
         }
     });
-    best.map(|hit| CastHit {
-        position: frame.point_to_world(hit.position),
-        normal: frame.vector_to_world(hit.normal),
-        ..hit
-    })
+    best.map(|hit| hit.placed(frame))
+}
+
+/// The distance of the planes across `normal` that the bodies touch from either side.
+fn plane_gap(a: &Body<'_>, b: &Body<'_>, normal: Vec3) -> f64 {
+    difference(a, b, -normal).w.dot(normal) - a.margin - b.margin
 }
 
 /// Steps before a path that grazes is given up.
@@ -135,19 +176,29 @@ const STEPS: usize = 100;
 /// step is exact for flat faces, and for round ones to the square of what it covers.
 fn bodies(a: &Body<'_>, path: Vec3, b: &Body<'_>) -> Option<CastHit> {
     let size = a.reach().min(b.reach());
-    let close = (1e-6 * size).max(1e-11 * (a.reach() + b.reach()));
+    let close = (2e-5 * size).max(1e-11 * (a.reach() + b.reach()));
     let mut moving = *a;
     let mut fraction = 0.0;
     for _ in 0..STEPS {
         moving.center = a.center + path * fraction;
         let d = body_distance(&moving, b, Vec3::ZERO);
         if d.distance <= close {
-            let mut hit = linear(d.distance, d.b, d.normal, path)?;
+            // Between round bodies that are close, the nearest points found are good to their distance, but the gap
+            // between the planes across the normal to the square of the normal's error.
+            let distance =
+                if d.distance > 0.0 { plane_gap(&moving, b, d.normal).max(0.0) } else { d.distance };
+            let mut hit = linear(distance, d.b, d.normal, path)?;
             if fraction > 0.0 {
                 // Rounding may let them touch: that is not an overlap at the start.
                 hit.depth = 0.0;
             }
             hit.fraction += fraction;
+            // The nearest points have moved on meanwhile: look once more, just before they meet.
+            moving.center = a.center + path * (hit.fraction - 1e-6 * size / path.length()).max(fraction);
+            let last = body_distance(&moving, b, Vec3::ZERO);
+            if last.distance > 0.0 && last.distance < d.distance {
+                hit.position = last.b;
+            }
             return (hit.fraction <= 1.0).then_some(hit);
         }
         let approach = -d.normal.dot(path);

@@ -3,8 +3,9 @@
 use super::convex::touch;
 use super::gjk::{Gap, gjk};
 use super::support::Body;
+use super::triangle::bounds;
 use crate::space::Probe;
-use crate::{Frame, Plane, Shape, TriMesh};
+use crate::{Frame, Heightfield, Plane, Shape, TriMesh};
 use ferrode_math::{Aabb, Pose, Vec3};
 
 /// The nearest points of two shapes, or the deepest if they overlap.
@@ -20,7 +21,8 @@ pub struct Distance {
     pub normal: Vec3,
 }
 
-/// The distance of two shapes; a mesh is its surface. `None` for pairs that have none: rays, and two planes.
+/// The distance of two shapes; meshes and heightfields are their surfaces. `None` for pairs that have none: rays, two
+/// planes, and a heightfield with a plane or another heightfield.
 pub fn distance(a: (&Shape, &Pose), b: (&Shape, &Pose)) -> Option<Distance> {
     distance_frames((a.0, &Frame::from(a.1)), (b.0, &Frame::from(b.1)))
 }
@@ -31,6 +33,24 @@ pub fn distance_frames(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> Option<Dista
     match (sa, sb) {
         (Shape::Plane(_), Shape::Plane(_)) => None,
         (Shape::TriMesh(mesh), Shape::Plane(p)) => mesh_plane_distance(mesh, fa, p),
+        (Shape::Heightfield(_), Shape::Plane(_) | Shape::Heightfield(_)) => None,
+        (Shape::Heightfield(_), _) => distance_frames(b, a).map(Distance::swapped),
+        (Shape::TriMesh(mesh), Shape::Heightfield(field)) => {
+            let mut best: Option<Distance> = None;
+            for i in 0..mesh.triangles().len() as u32 {
+                let corners = mesh.corners(i).map(|p| fb.point_to_local(fa.point_to_world(p)));
+                let d = body_field_distance(&Body::triangle(corners), field)?;
+                if best.is_none_or(|b| d.distance < b.distance) {
+                    best = Some(d);
+                }
+            }
+            best.map(|d| d.placed(fb))
+        }
+        (Shape::Plane(_), Shape::Heightfield(_)) => None,
+        (_, Shape::Heightfield(field)) => {
+            let local = Frame::new(fb.point_to_local(fa.position), fb.rotation.transpose() * fa.rotation);
+            body_field_distance(&Body::of(sa, &local, Vec3::ZERO)?, field).map(|d| d.placed(fb))
+        }
         (Shape::Plane(_), _) => distance_frames(b, a).map(Distance::swapped),
         (_, Shape::Plane(p)) => Some(plane_distance(p, &Body::of(sa, fa, Vec3::ZERO)?)),
         (Shape::TriMesh(mesh), Shape::TriMesh(other)) => {
@@ -56,7 +76,40 @@ pub fn distance_frames(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> Option<Dista
     }
 }
 
+/// The least distance to a triangle of a field, in whose coordinates the body is.
+fn body_field_distance(body: &Body<'_>, field: &Heightfield) -> Option<Distance> {
+    let (sx, sz) = field.cell();
+    let around = bounds(body);
+    let whole = field.aabb(&Frame::IDENTITY);
+    // What is further than this has nothing nearer beyond.
+    let last = match field.is_wrapped() {
+        false => around.union(&whole).extent().length(),
+        true => (around.extent() + whole.extent().min(Vec3::splat(1e150))).y + 100.0 * sx.max(sz),
+    };
+    let mut margin = sx.max(sz);
+    loop {
+        let mut best: Option<Distance> = None;
+        field.triangles_in(&around.expanded(margin), |corners| {
+            let d = body_distance(body, &Body::triangle(corners), Vec3::ZERO);
+            if best.is_none_or(|b| d.distance < b.distance) {
+                best = Some(d);
+            }
+        });
+        // Nothing outside the box looked at is nearer than the margin.
+        if best.is_some_and(|b| b.distance <= margin) || margin > last {
+            return best;
+        }
+        margin *= 2.0;
+    }
+}
+
 impl Distance {
+    /// From the coordinates of a frame to the world.
+    fn placed(self, frame: &Frame) -> Self {
+        let (a, b) = (frame.point_to_world(self.a), frame.point_to_world(self.b));
+        Self { a, b, normal: frame.vector_to_world(self.normal), ..self }
+    }
+
     /// The same seen from the other shape.
     #[must_use]
     pub fn swapped(self) -> Self {

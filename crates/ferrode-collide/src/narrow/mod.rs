@@ -26,6 +26,7 @@ mod cylinder_sphere;
 mod dispatch;
 mod distance;
 mod epa;
+mod field_cells;
 mod gjk;
 mod heightfield_shape;
 mod manifold;

@@ -25,9 +25,15 @@ pub fn closest_point(shape: &Shape, frame: &Frame, point: Vec3) -> Option<Closes
     // From a point, distance and direction say where; the witness of a depth within a round shape is less exact.
     let position = point - d.normal * d.distance;
     let mut closest = ClosestPoint { position, distance: d.distance, normal: d.normal };
-    if let Shape::TriMesh(mesh) = shape
-        && is_within(mesh, frame, point)
-    {
+    let within = match shape {
+        Shape::TriMesh(mesh) => is_within(mesh, frame, point),
+        Shape::Heightfield(field) => {
+            let p = frame.point_to_local(point);
+            field.surface_at(p.x, p.z).is_some_and(|y| p.y < y)
+        }
+        _ => false,
+    };
+    if within {
         (closest.distance, closest.normal) = (-d.distance.abs(), -d.normal);
     }
     Some(closest)
@@ -90,7 +96,7 @@ impl Colliders {
 }
 
 /// Depth of a point within a shape: the least distance to its surface; outside, minus the distance. A mesh counts as
-/// closed. `None` for rays, which have no inside.
+/// closed, and a heightfield as filled below its surface. `None` for rays, which have no inside.
 pub fn point_depth(shape: &Shape, frame: &Frame, point: Vec3) -> Option<f64> {
     let local = frame.point_to_local(point);
     Some(match shape {

@@ -1,0 +1,57 @@
+//! The triangles of a heightfield's surface.
+
+use crate::Heightfield;
+use ferrode_math::{Aabb, Vec3};
+
+/// Most cells along either axis that are looked at in a field without end.
+const MOST: i64 = 1000;
+
+impl Heightfield {
+    /// Calls `found` with each triangle of the surface, in the field's coordinates, whose box touches `aabb`.
+    pub(crate) fn triangles_in(&self, aabb: &Aabb, mut found: impl FnMut([Vec3; 3])) {
+        let (sx, sz) = self.cell();
+        let range = |low: f64, high: f64, whole: f64, size: f64, n: usize| {
+            // A conversion clamps what is too large.
+            let (from, to) = (
+                ((low + 0.5 * whole) / size).next_down().floor() as i64,
+                ((high + 0.5 * whole) / size).next_up().floor() as i64,
+            );
+            if self.is_wrapped() {
+                (from, to.min(from.saturating_add(MOST)))
+            } else {
+                (from.max(0), to.min(n as i64 - 2))
+            }
+        };
+        let (x0, x1) = range(aabb.min.x, aabb.max.x, self.width(), sx, self.columns());
+        let (z0, z1) = range(aabb.min.z, aabb.max.z, self.depth(), sz, self.rows());
+        for x in x0..=x1 {
+            for z in z0..=z1 {
+                let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.vertex(x + i, z + j));
+                for t in [[a, b, c], [d, c, b]] {
+                    let (min, max) = (t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2]));
+                    if aabb.overlaps(&Aabb::new(min, max)) {
+                        found(t);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Height of the surface above a place, all in the field's coordinates; `None` beside the field.
+    pub(crate) fn surface_at(&self, x: f64, z: f64) -> Option<f64> {
+        let (sx, sz) = self.cell();
+        let (u, v) = ((x + 0.5 * self.width()) / sx, (z + 0.5 * self.depth()) / sz);
+        let inside = |u: f64, n: usize| self.is_wrapped() || (0.0..=(n - 1) as f64).contains(&u);
+        if !(inside(u, self.columns()) && inside(v, self.rows())) {
+            return None;
+        }
+        let (i, j) = (u.floor() as i64, v.floor() as i64);
+        let (u, v) = (u - u.floor(), v - v.floor());
+        let h = |di: i64, dj: i64| self.height(i + di, j + dj);
+        Some(if u + v <= 1.0 {
+            h(0, 0) + u * (h(1, 0) - h(0, 0)) + v * (h(0, 1) - h(0, 0))
+        } else {
+            h(1, 1) + (1.0 - u) * (h(0, 1) - h(1, 1)) + (1.0 - v) * (h(1, 0) - h(1, 1))
+        })
+    }
+}
