@@ -1,6 +1,7 @@
 //! Bodies: state, forces, mass, and how they are stepped.
 
 use crate::fault::{Fault, Outcome, export, from_engine};
+use crate::geom::{body_moved, leave_dying_body};
 use crate::mass::MassRecord;
 use crate::real::{
     In, InMatrix, InQuaternion, Out, OutMatrix, OutQuaternion, OutVector, Real, Real4, f, mat3, matrix3,
@@ -73,11 +74,12 @@ fn push(body: BodyId, force: impl FnOnce(Mat3) -> Vec3, arm: impl FnOnce(Vec3, M
 }
 
 /// A new quaternion, normalised, and its matrix.
-fn turn(body: &BodyRecord, q: Quat, m: &Mat3) {
+fn turn(body: &BodyRecord, q: Quat, m: &Mat3) -> Outcome<()> {
     body.change(|body| {
         body.quaternion.set(quaternion(q));
         body.rotation.set(matrix3(m));
     });
+    body_moved(body)
 }
 
 /// The address of a part of the record: it stays for the body's life, and the engine keeps it up to date.
@@ -99,6 +101,7 @@ export! {
     fn dBodyCreate(world: WorldId) -> BodyId { BodyId::of(BodyRecord::create(world.get()?)) }
 
     fn dBodyDestroy(body: BodyId) {
+        leave_dying_body(body.get()?);
         with_world(body, |engine, key| engine.destroy_body(key))?;
         BodyRecord::pool().destroy(body.get()?);
     }
@@ -110,7 +113,9 @@ export! {
     // ---- state ----
 
     fn dBodySetPosition(body: BodyId, x: Real, y: Real, z: Real) {
-        body.get()?.change(|body| body.position.set([x, y, z, 0.0]))
+        let body = body.get()?;
+        body.change(|body| body.position.set([x, y, z, 0.0]));
+        body_moved(body)?
     }
     fn dBodySetRotation(body: BodyId, rotation: InMatrix) {
         let body = body.get()?;
@@ -118,13 +123,13 @@ export! {
         // As in ODE the quaternion is that of the matrix as given.
         let straight = rotation::orthogonalize_as_ode(&given).ok_or(Fault::ARGUMENT)?;
         let q = Quat::from_matrix(&given).normalized();
-        turn(body, q.ok_or(Fault::internal("assertion \"the quaternion can be normalised\" failed"))?, &straight)
+        turn(body, q.ok_or(Fault::internal("assertion \"the quaternion can be normalised\" failed"))?, &straight)?
     }
     fn dBodySetQuaternion(body: BodyId, q: InQuaternion) {
         let body = body.get()?;
         let q = quat(&q.get()?).normalized();
         let q = q.ok_or(Fault::internal("assertion \"the quaternion can be normalised\" failed"))?;
-        turn(body, q, &q.to_matrix())
+        turn(body, q, &q.to_matrix())?
     }
     fn dBodySetLinearVel(body: BodyId, x: Real, y: Real, z: Real) {
         body.get()?.change(|body| body.linear_velocity.set([x, y, z, 0.0]))

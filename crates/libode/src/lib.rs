@@ -16,6 +16,7 @@ mod contact;
 mod cooperative;
 mod errors;
 mod fault;
+mod geom;
 mod init;
 mod joint;
 mod mass;

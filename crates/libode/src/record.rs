@@ -70,6 +70,7 @@ pub struct BodyRecord {
     pub key: Cell<Option<BodyKey>>,
     pub data: Cell<*mut c_void>,
     pub moved: Cell<Option<MovedCallback>>,
+    pub first_geom: Cell<crate::geom::GeomId>,
 }
 record!(BodyRecord, BODIES, 2);
 

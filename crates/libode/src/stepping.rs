@@ -132,6 +132,8 @@ fn call_back(world: &'static WorldRecord, engine: &mut World, key: BodyKey) {
     let handle: BodyId = handle_of(body.user_data());
     let Some(record) = handle.live() else { return };
     record.show(&body.state());
+    // A space that is locked, by a step within a near callback, learns of it when it is asked again.
+    crate::geom::body_moved(record).ok();
     let Some(moved) = record.moved.get() else { return };
     let before = world.lend(engine);
     // SAFETY: the program's own function, called as its header says, with the handle that it set it for. No reference to

@@ -1,6 +1,7 @@
 //! Worlds: creation, parameters, and what new bodies inherit.
 
 use crate::fault::{Outcome, export, from_engine, message};
+use crate::geom::leave_dying_body;
 use crate::real::{OutVector, Real, f, r, vec3, vector3};
 use crate::record::{BodyId, BodyRecord, JointId, Required, WorldId, WorldRecord, handle_of};
 use crate::slab::Record;
@@ -57,6 +58,7 @@ fn destroy(world: &'static WorldRecord) -> usize {
         (bodies, joints)
     });
     for body in bodies.into_iter().filter_map(BodyId::live) {
+        leave_dying_body(body);
         BodyRecord::pool().destroy(body);
     }
     let mut orphans = 0;

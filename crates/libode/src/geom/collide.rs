@@ -1,0 +1,240 @@
+//! Contacts of geoms and pairs of spaces, as the program asks for them; boxes and segments by themselves.
+
+use super::space::{Pairs, pairs_between, pairs_within};
+use super::{GeomId, GeomRecord};
+use crate::contact::ContactGeomRecord;
+use crate::fault::{Fault, Outcome, export, fence};
+use crate::real::{InMatrix, InVector, Out, OutVector, Real, mat3, padded, r, vector, vector3};
+use crate::record::Required;
+use core::cell::RefCell;
+use core::ffi::{c_int, c_uint, c_void};
+use ferrode_collide::narrow::{closest_segment_points, collide_frames, cuboid_cuboid, cuboids_touch};
+use ferrode_collide::{CollideOptions, Contacts, Cuboid, Frame, GeomContact};
+
+/// `dNearCallback`.
+type NearCallback = unsafe extern "C-unwind" fn(*mut c_void, GeomId, GeomId);
+
+thread_local! {
+    /// Memory for one call's contacts.
+    static FOUND: RefCell<Vec<GeomContact>> = const { RefCell::new(Vec::new()) };
+}
+
+/// The program's array of contacts, with a stride of its own.
+#[derive(Clone, Copy)]
+struct Target {
+    first: *mut ContactGeomRecord,
+    skip: usize,
+}
+
+impl Target {
+    fn at(self, index: usize) -> *mut ContactGeomRecord {
+        self.first.wrapping_byte_add(index * self.skip)
+    }
+}
+
+fn write(target: Target, at: usize, contact: &GeomContact, a: GeomId, b: GeomId) {
+    let record = ContactGeomRecord {
+        position: padded(contact.point.position),
+        normal: padded(contact.point.normal),
+        depth: r(contact.point.depth),
+        geom1: core::ptr::with_exposed_provenance_mut(a.address()),
+        geom2: core::ptr::with_exposed_provenance_mut(b.address()),
+        side1: contact.side1,
+        side2: contact.side2,
+    };
+    // SAFETY: the program's array has room for as many contacts as the flags ask for (the contract of dCollide), and
+    // `at` is below that.
+    unsafe { target.at(at).write_unaligned(record) };
+}
+
+/// Contacts of two geoms, from number `from` on, up to `max`; returns the next number.
+fn contacts_of(
+    a: &'static GeomRecord,
+    b: &'static GeomRecord,
+    flags: c_uint,
+    target: Target,
+    from: usize,
+) -> usize {
+    let options = CollideOptions::from_ode_flags(flags);
+    let left = usize::from(options.max_contacts).saturating_sub(from);
+    let same_body = !a.body.get().is_null() && a.body.get().address() == b.body.get().address();
+    if core::ptr::eq(a, b) || same_body || left == 0 {
+        return from;
+    }
+    let options = CollideOptions { max_contacts: left as u16, ..options };
+    let (fa, fb) = (a.frame(), b.frame());
+    FOUND.with_borrow_mut(|found| {
+        found.clear();
+        if let (Some(sa), Some(sb)) = (&*a.shape.borrow(), &*b.shape.borrow()) {
+            collide_frames((sa, &fa), (sb, &fb), options, found);
+        }
+        let (ga, gb) = (GeomId::of(a), GeomId::of(b));
+        for (i, contact) in found.iter().take(left).enumerate() {
+            write(target, from + i, contact, ga, gb);
+        }
+        from + found.len().min(left)
+    })
+}
+
+fn collide(
+    a: &'static GeomRecord,
+    b: &'static GeomRecord,
+    flags: c_uint,
+    target: Target,
+    from: usize,
+) -> Outcome<usize> {
+    if !a.is_space() && !b.is_space() {
+        return Ok(contacts_of(a, b, flags, target, from));
+    }
+    let mut pairs = Pairs::new();
+    pairs_between(a, b, &mut pairs)?;
+    let mut count = from;
+    for (a, b) in pairs {
+        if count < (flags & 0xffff) as usize
+            && let (Some(a), Some(b)) = (a.live(), b.live())
+        {
+            count = collide(a, b, flags, target, count)?;
+        }
+    }
+    Ok(count)
+}
+
+/// Locks spaces while the program is told of their pairs. An escape by `longjmp` leaves them locked, as in ODE.
+struct Lock<'a>(&'a [&'static GeomRecord]);
+
+impl<'a> Lock<'a> {
+    fn new(spaces: &'a [&'static GeomRecord]) -> Self {
+        spaces.iter().for_each(|space| space.locks.set(space.locks.get() + 1));
+        Self(spaces)
+    }
+}
+
+impl Drop for Lock<'_> {
+    fn drop(&mut self) {
+        self.0.iter().for_each(|space| space.locks.set(space.locks.get().saturating_sub(1)));
+    }
+}
+
+/// Calls back for each pair whose geoms still live and may be seen. Nothing of ours is borrowed meanwhile.
+fn tell(pairs: &Pairs, spaces: &[&'static GeomRecord], data: *mut c_void, callback: NearCallback) {
+    let _lock = Lock::new(spaces);
+    for (a, b) in pairs {
+        if a.live().is_some() && b.live().is_some() {
+            // SAFETY: the program's own function, called as its header says.
+            unsafe { callback(data, *a, *b) };
+        }
+    }
+}
+
+/// Calls back for each pair of a space's members that may touch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn dSpaceCollide(
+    space: GeomId,
+    data: *mut c_void,
+    callback: Option<NearCallback>,
+) {
+    fence("dSpaceCollide", || {
+        let space = space.get()?;
+        space.require_space()?;
+        let callback = callback.ok_or(Fault::ARGUMENT)?;
+        let mut pairs = Pairs::new();
+        pairs_within(space, &mut pairs)?;
+        tell(&pairs, &[space], data, callback);
+        Ok(())
+    });
+}
+
+/// Calls back for each pair with one from each geom or space that may touch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn dSpaceCollide2(
+    a: GeomId,
+    b: GeomId,
+    data: *mut c_void,
+    callback: Option<NearCallback>,
+) {
+    fence("dSpaceCollide2", || {
+        let (a, b) = (a.get()?, b.get()?);
+        let callback = callback.ok_or(Fault::ARGUMENT)?;
+        let mut pairs = Pairs::new();
+        pairs_between(a, b, &mut pairs)?;
+        let sides = [a, b];
+        let spaces: &[_] = match (a.is_space(), b.is_space()) {
+            (true, true) => &sides,
+            (true, false) => &sides[..1],
+            (false, true) => &sides[1..],
+            (false, false) => &[],
+        };
+        tell(&pairs, spaces, data, callback);
+        Ok(())
+    });
+}
+
+/// A box at a place, from C's arrays.
+fn box_at(position: InVector, rotation: InMatrix, sides: InVector) -> Outcome<(Cuboid, Frame)> {
+    let cuboid = Cuboid::new(vector(&sides.get()?)).map_err(|_| Fault::ARGUMENT)?;
+    Ok((cuboid, Frame::new(vector(&position.get()?), mat3(&rotation.get()?))))
+}
+
+export! {
+    fn dCollide(o1: GeomId, o2: GeomId, flags: c_int, contact: *mut ContactGeomRecord, skip: c_int) -> c_int {
+        let (a, b) = (o1.get()?, o2.get()?);
+        let flags = flags.cast_unsigned();
+        if flags & 0xffff == 0 {
+            return Err(Fault::user("no contacts requested"));
+        }
+        let skip = usize::try_from(skip).ok().filter(|skip| *skip >= size_of::<ContactGeomRecord>());
+        let skip = skip.ok_or(Fault::internal("assertion \"skip >= sizeof(dContactGeom)\" failed"))?;
+        if contact.is_null() {
+            return Err(Fault::ARGUMENT);
+        }
+        if !crate::init::is_started() {
+            return Err(Fault::user("dInitODE2 must be called first"));
+        }
+        collide(a, b, flags, Target { first: contact, skip }, 0)? as c_int
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn dBoxBox(
+        p1: InVector, r1: InMatrix, side1: InVector, p2: InVector, r2: InMatrix, side2: InVector, normal: OutVector,
+        depth: Out<Real>, return_code: Out<c_int>, flags: c_int, contact: *mut ContactGeomRecord, skip: c_int,
+    ) -> c_int {
+        let ((a, fa), (b, fb)) = (box_at(p1, r1, side1)?, box_at(p2, r2, side2)?);
+        let skip = usize::try_from(skip).ok().filter(|skip| *skip >= size_of::<ContactGeomRecord>());
+        let target = Target { first: contact, skip: skip.ok_or(Fault::ARGUMENT)? };
+        if contact.is_null() {
+            return Err(Fault::ARGUMENT);
+        }
+        let flags = flags.cast_unsigned();
+        let flags = if flags & 0xffff == 0 { flags | 1 } else { flags };
+        let mut found = Vec::new();
+        let mut contacts = Contacts::new(&mut found, CollideOptions::from_ode_flags(flags));
+        let Some(hit) = cuboid_cuboid(&a, &fa, &b, &fb, &mut contacts) else { return Ok(0) };
+        normal.set(vector3(hit.normal))?;
+        depth.set([r(hit.depth)])?;
+        return_code.set([hit.code as c_int])?;
+        for (i, contact) in found.iter().enumerate() {
+            let record = target.at(i);
+            // SAFETY: the program's array has room for as many contacts as asked for (the function's contract); only
+            // position and depth are written.
+            unsafe {
+                (&raw mut (*record).position).cast::<[Real; 3]>().write_unaligned(vector3(contact.point.position));
+                (&raw mut (*record).depth).write_unaligned(r(contact.point.depth));
+            }
+        }
+        found.len() as c_int
+    }
+    fn dBoxTouchesBox(
+        p1: InVector, r1: InMatrix, side1: InVector, p2: InVector, r2: InMatrix, side2: InVector,
+    ) -> c_int {
+        let ((a, fa), (b, fb)) = (box_at(p1, r1, side1)?, box_at(p2, r2, side2)?);
+        cuboids_touch(&a, &fa, &b, &fb).into()
+    }
+    fn dClosestLineSegmentPoints(
+        a1: InVector, a2: InVector, b1: InVector, b2: InVector, cp1: OutVector, cp2: OutVector,
+    ) {
+        let point = |p: InVector| p.get().map(|p| vector(&p));
+        let (first, second) = closest_segment_points(point(a1)?, point(a2)?, point(b1)?, point(b2)?);
+        cp1.set(vector3(first))?;
+        cp2.set(vector3(second))?
+    }
+}

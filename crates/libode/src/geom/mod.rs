@@ -1,0 +1,344 @@
+//! Geoms and spaces: their records, where they are, and what has moved.
+//!
+//! A space is a geom, and both are one kind of record. A geom without a body, or with an offset, has its pose in the
+//! record; else its pose is the body's, and getters point into the body's record.
+
+mod collide;
+mod pose;
+mod shapes;
+mod space;
+
+use crate::fault::{Fault, Outcome, export};
+use crate::real::{Real, Real4, Real12, mat3, r, vector};
+use crate::record::{BodyId, BodyRecord, Required, record};
+use crate::slab::{Handle, Pool, Record, Tag};
+use core::cell::{Cell, RefCell};
+use core::ffi::{c_int, c_ulong, c_void};
+use ferrode_collide::{Frame, Shape};
+use ferrode_math::{Aabb, Mat3, Vec3};
+
+pub use space::SpaceData;
+
+pub type GeomId = Handle<GeomRecord>;
+
+const LOCKED: Fault = Fault::user("Invalid operation for locked space");
+const NOT_PLACEABLE: Fault = Fault::user("geom must be placeable");
+
+/// ODE's numbers of the classes.
+pub mod class {
+    use core::ffi::c_int;
+    pub const SPHERE: c_int = 0;
+    pub const BOX: c_int = 1;
+    pub const CAPSULE: c_int = 2;
+    pub const CYLINDER: c_int = 3;
+    pub const PLANE: c_int = 4;
+    pub const RAY: c_int = 5;
+    pub const CONVEX: c_int = 6;
+    pub const SIMPLE_SPACE: c_int = 10;
+    pub const HASH_SPACE: c_int = 11;
+    pub const SWEEP_AND_PRUNE_SPACE: c_int = 12;
+    pub const QUADTREE_SPACE: c_int = 13;
+}
+
+/// A geom or a space.
+#[derive(Default)]
+pub struct GeomRecord {
+    tag: Tag,
+    class: Cell<c_int>,
+    data: Cell<*mut c_void>,
+    body: Cell<BodyId>,
+    next_on_body: Cell<GeomId>,
+    space: Cell<GeomId>,
+    /// Its number in the space's table.
+    proxy: Cell<u32>,
+    category: Cell<c_ulong>,
+    collide: Cell<c_ulong>,
+    disabled: Cell<bool>,
+    /// The space that it is in has yet to learn its box. The spaces above a dirty geom are dirty.
+    dirty: Cell<bool>,
+    stale: Cell<bool>,
+    aabb: Cell<Option<Aabb>>,
+    position: Cell<Real4>,
+    rotation: Cell<Real12>,
+    has_offset: Cell<bool>,
+    offset_position: Cell<Real4>,
+    offset_rotation: Cell<Real12>,
+    shape: RefCell<Option<Shape>>,
+    contents: RefCell<Option<Box<SpaceData>>>,
+    /// Collisions that report this space's members now.
+    locks: Cell<u32>,
+}
+record!(GeomRecord, GEOMS, 13);
+
+impl GeomRecord {
+    /// A geom of a class, with its shape unless it is a space, in a space or in none.
+    fn create(
+        class: c_int,
+        shape: Option<Shape>,
+        contents: Option<SpaceData>,
+        space: GeomId,
+    ) -> Outcome<GeomId> {
+        let parent = if space.is_null() { None } else { Some(space.get()?) };
+        if let Some(parent) = parent {
+            parent.require_space()?;
+            parent.require_unlocked()?;
+        }
+        let geom = GEOMS.create();
+        geom.class.set(class);
+        geom.category.set(c_ulong::MAX);
+        geom.collide.set(c_ulong::MAX);
+        geom.rotation.set(crate::real::matrix3(&Mat3::IDENTITY));
+        geom.dirty.set(true);
+        geom.stale.set(true);
+        *geom.shape.borrow_mut() = shape;
+        *geom.contents.borrow_mut() = contents.map(Box::new);
+        if let Some(parent) = parent {
+            space::add(parent, geom)?;
+        }
+        Ok(GeomId::of(geom))
+    }
+
+    fn is_space(&self) -> bool {
+        (class::SIMPLE_SPACE..=class::QUADTREE_SPACE).contains(&self.class.get())
+    }
+
+    fn require_space(&self) -> Outcome<()> {
+        if self.is_space() { Ok(()) } else { Err(Fault::user("argument not a space")) }
+    }
+
+    fn require_unlocked(&self) -> Outcome<()> {
+        if self.locks.get() > 0 { Err(LOCKED) } else { Ok(()) }
+    }
+
+    fn is_placeable(&self) -> bool {
+        !self.is_space() && self.class.get() != class::PLANE
+    }
+
+    fn require_placeable(&self) -> Outcome<()> {
+        if self.is_placeable() { Ok(()) } else { Err(NOT_PLACEABLE) }
+    }
+
+    fn require_class(&self, class: c_int, fault: &'static str) -> Outcome<()> {
+        if self.class.get() == class { Ok(()) } else { Err(Fault::user(fault)) }
+    }
+
+    fn on_body(&self) -> Option<&'static BodyRecord> {
+        self.body.get().live()
+    }
+
+    /// The space that the geom is in.
+    fn parent(&self) -> Option<&'static Self> {
+        self.space.get().live()
+    }
+
+    /// Whether spaces look at it: enabled, and of some size.
+    fn is_visible(&self) -> bool {
+        !self.disabled.get() && !self.shape.borrow().as_ref().is_some_and(Shape::is_zero_sized)
+    }
+
+    /// The geom's pose within its body.
+    fn offset(&self) -> Option<Frame> {
+        let offset = || Frame::new(vector(&self.offset_position.get()), mat3(&self.offset_rotation.get()));
+        self.has_offset.get().then(offset)
+    }
+
+    /// Where the geom is in the world. One with an offset has its record brought up to date.
+    fn frame(&self) -> Frame {
+        let Some(body) = self.on_body() else {
+            return Frame::new(vector(&self.position.get()), mat3(&self.rotation.get()));
+        };
+        let body = body.current();
+        let (p, m) = (vector(&body.position.get()), mat3(&body.rotation.get()));
+        let Some(offset) = self.offset() else { return Frame::new(p, m) };
+        let frame = Frame::new(p + m * offset.position, m * offset.rotation);
+        self.position.set(crate::real::padded(frame.position));
+        self.rotation.set(crate::real::matrix3(&frame.rotation));
+        frame
+    }
+
+    /// The world box, brought up to date.
+    fn current_aabb(&self) -> Aabb {
+        if self.stale.get() || self.aabb.get().is_none() {
+            let aabb = match &*self.contents.borrow() {
+                Some(contents) => contents.aabb(self.class.get()),
+                None => {
+                    self.shape.borrow().as_ref().map_or(Aabb::EMPTY, |shape| shape.aabb_in(&self.frame()))
+                }
+            };
+            self.aabb.set(Some(aabb));
+            self.stale.set(false);
+        }
+        self.aabb.get().unwrap_or(Aabb::EMPTY)
+    }
+
+    /// Notes that pose or shape have changed: the space it is in puts it first, and spaces above learn of it.
+    fn moved(&self) -> Outcome<()> {
+        let mut above = self.parent();
+        while let Some(space) = above {
+            space.require_unlocked()?;
+            above = space.parent();
+        }
+        self.stale.set(true);
+        let mut dirty = self.dirty.replace(true);
+        let mut proxy = self.proxy.get();
+        let mut above = self.parent();
+        while let Some(space) = above {
+            if !dirty && let Some(contents) = &mut *space.contents.borrow_mut() {
+                contents.moved(proxy);
+                dirty = space.dirty.replace(true);
+                proxy = space.proxy.get();
+            }
+            space.stale.set(true);
+            above = space.parent();
+        }
+        Ok(())
+    }
+
+    /// Tells the space about bits, body, and whether to look at the geom.
+    fn tell_space(&self) {
+        if let Some(space) = self.parent()
+            && let Some(contents) = &mut *space.contents.borrow_mut()
+        {
+            contents.refresh(self);
+        }
+    }
+
+    /// Takes the geom off its body; it stays where it is.
+    fn leave_body(&'static self) {
+        let Some(body) = self.on_body() else { return };
+        let frame = self.frame();
+        self.position.set(crate::real::padded(frame.position));
+        self.rotation.set(crate::real::matrix3(&frame.rotation));
+        let this = GeomId::of(self).address();
+        if body.first_geom.get().address() == this {
+            body.first_geom.set(self.next_on_body.get());
+        } else {
+            let mut other = body.first_geom.get().live();
+            while let Some(geom) = other {
+                if geom.next_on_body.get().address() == this {
+                    geom.next_on_body.set(self.next_on_body.get());
+                    break;
+                }
+                other = geom.next_on_body.get().live();
+            }
+        }
+        self.next_on_body.set(GeomId::NULL);
+        self.body.set(BodyId::NULL);
+        self.has_offset.set(false);
+    }
+
+    fn join_body(&'static self, body: &'static BodyRecord) {
+        self.body.set(BodyId::of(body));
+        self.next_on_body.set(body.first_geom.get());
+        body.first_geom.set(GeomId::of(self));
+    }
+
+    /// Destroys a geom, or a space with what it owns.
+    fn destroy(&'static self) -> Outcome<()> {
+        if let Some(parent) = self.parent() {
+            parent.require_unlocked()?;
+        }
+        self.require_unlocked()?;
+        if self.is_space() {
+            space::empty(self)?;
+        }
+        self.leave_body();
+        if let Some(parent) = self.parent() {
+            space::remove(parent, self)?;
+        }
+        *self.shape.borrow_mut() = None;
+        *self.contents.borrow_mut() = None;
+        GEOMS.destroy(self);
+        Ok(())
+    }
+}
+
+/// Tells all geoms of a body that it has moved.
+pub fn body_moved(body: &BodyRecord) -> Outcome<()> {
+    let mut geom = body.first_geom.get().live();
+    while let Some(one) = geom {
+        one.moved()?;
+        geom = one.next_on_body.get().live();
+    }
+    Ok(())
+}
+
+/// Takes all geoms off a body that is about to die.
+pub fn leave_dying_body(body: &BodyRecord) {
+    while let Some(geom) = body.first_geom.get().live() {
+        geom.leave_body();
+        geom.tell_space();
+        if body.first_geom.get().address() == GeomId::of(geom).address() {
+            return;
+        }
+    }
+}
+
+fn set_body(geom: GeomId, body: BodyId) -> Outcome<()> {
+    let geom = geom.get()?;
+    let target = if body.is_null() { None } else { Some(body.get()?) };
+    if target.is_some() {
+        geom.require_placeable()?;
+    }
+    if let Some(parent) = geom.parent() {
+        parent.require_unlocked()?;
+    }
+    if let Some(target) = target {
+        if geom.body.get().address() != body.address() {
+            geom.leave_body();
+            geom.join_body(target);
+        }
+        geom.moved()?;
+    } else {
+        geom.leave_body();
+    }
+    geom.tell_space();
+    Ok(())
+}
+
+fn set_bits(geom: GeomId, set: impl FnOnce(&GeomRecord)) -> Outcome<()> {
+    let geom = geom.get()?;
+    if let Some(parent) = geom.parent() {
+        parent.require_unlocked()?;
+    }
+    set(geom);
+    geom.tell_space();
+    Ok(())
+}
+
+fn set_enabled(geom: GeomId, enabled: bool) -> Outcome<()> {
+    let geom = geom.get()?;
+    geom.disabled.set(!enabled);
+    geom.tell_space();
+    Ok(())
+}
+
+/// A box in ODE's order.
+fn six(aabb: &Aabb) -> [Real; 6] {
+    let (a, b): (Vec3, Vec3) = (aabb.min, aabb.max);
+    [r(a.x), r(b.x), r(a.y), r(b.y), r(a.z), r(b.z)]
+}
+
+export! {
+    fn dGeomDestroy(geom: GeomId) { geom.get()?.destroy()? }
+    fn dGeomSetData(geom: GeomId, data: *mut c_void) { geom.get()?.data.set(data) }
+    fn dGeomGetData(geom: GeomId) -> *mut c_void { geom.get()?.data.get() }
+    fn dGeomGetClass(geom: GeomId) -> c_int { geom.get()?.class.get() }
+    fn dGeomIsSpace(geom: GeomId) -> c_int { geom.get()?.is_space().into() }
+    fn dGeomGetSpace(geom: GeomId) -> GeomId { geom.get()?.space.get() }
+    fn dGeomSetBody(geom: GeomId, body: BodyId) { set_body(geom, body)? }
+    fn dGeomGetBody(geom: GeomId) -> BodyId { geom.get()?.body.get() }
+    fn dGeomMoved(geom: GeomId) { geom.get()?.moved()? }
+    fn dBodyGetFirstGeom(body: BodyId) -> GeomId { body.get()?.first_geom.get() }
+    fn dBodyGetNextGeom(geom: GeomId) -> GeomId { geom.get()?.next_on_body.get() }
+    fn dGeomGetBodyNext(geom: GeomId) -> GeomId { geom.get()?.next_on_body.get() }
+    fn dGeomGetAABB(geom: GeomId, aabb: crate::real::Out<Real, 6>) { aabb.set(six(&geom.get()?.current_aabb()))? }
+    fn dInfiniteAABB(_geom: GeomId, aabb: crate::real::Out<Real, 6>) { aabb.set(six(&Aabb::EVERYTHING))? }
+    fn dGeomSetCategoryBits(geom: GeomId, bits: c_ulong) { set_bits(geom, |geom| geom.category.set(bits))? }
+    fn dGeomGetCategoryBits(geom: GeomId) -> c_ulong { geom.get()?.category.get() }
+    fn dGeomSetCollideBits(geom: GeomId, bits: c_ulong) { set_bits(geom, |geom| geom.collide.set(bits))? }
+    fn dGeomGetCollideBits(geom: GeomId) -> c_ulong { geom.get()?.collide.get() }
+    fn dGeomEnable(geom: GeomId) { set_enabled(geom, true)? }
+    fn dGeomDisable(geom: GeomId) { set_enabled(geom, false)? }
+    fn dGeomIsEnabled(geom: GeomId) -> c_int { (!geom.get()?.disabled.get()).into() }
+}

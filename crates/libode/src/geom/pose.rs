@@ -1,0 +1,216 @@
+//! Where geoms are: their own poses, their bodies', and offsets within these.
+
+use super::{GeomId, GeomRecord, body_moved};
+use crate::fault::{Fault, Outcome, export};
+use crate::real::{
+    InMatrix, InQuaternion, OutMatrix, OutQuaternion, OutVector, Real, Real4, Real12, mat3, matrix3, padded,
+    quat, quaternion, vec3, vector, vector3,
+};
+use crate::record::Required;
+use core::cell::Cell;
+use core::ffi::c_int;
+use ferrode_collide::Frame;
+use ferrode_math::{Mat3, Quat, Vec3};
+
+/// What getters point to when there is no offset.
+static NO_OFFSET: [Real; 4] = [0.0; 4];
+static NO_TURN: [Real; 12] = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+
+fn placeable(geom: GeomId) -> Outcome<&'static GeomRecord> {
+    let geom = geom.get()?;
+    geom.require_placeable()?;
+    Ok(geom)
+}
+
+/// Puts a geom somewhere: moves its body, if it has one, so that the geom lands there.
+pub fn place(geom: &GeomRecord, frame: &Frame, turned: bool) -> Outcome<()> {
+    let Some(body) = geom.on_body() else {
+        geom.position.set(padded(frame.position));
+        geom.rotation.set(matrix3(&frame.rotation));
+        return geom.moved();
+    };
+    let (position, rotation) = match geom.offset() {
+        None => (frame.position, frame.rotation),
+        Some(offset) => {
+            let rotation = frame.rotation * offset.rotation.transpose();
+            (frame.position - rotation * offset.position, rotation)
+        }
+    };
+    body.change(|body| {
+        body.position.set(padded(position));
+        if turned {
+            body.rotation.set(matrix3(&rotation));
+            if let Some(q) = Quat::from_matrix(&rotation).normalized() {
+                body.quaternion.set(quaternion(q));
+            }
+        }
+    });
+    body_moved(body)
+}
+
+fn on_body(geom: GeomId) -> Outcome<(&'static GeomRecord, Frame)> {
+    let geom = placeable(geom)?;
+    let body = geom.on_body().ok_or(Fault::user("geom must be on a body"))?.current();
+    Ok((geom, Frame::new(vector(&body.position.get()), mat3(&body.rotation.get()))))
+}
+
+fn set_offset(geom: &GeomRecord, position: Vec3, rotation: &Mat3) -> Outcome<()> {
+    geom.offset_position.set(padded(position));
+    geom.offset_rotation.set(matrix3(rotation));
+    geom.has_offset.set(true);
+    geom.moved()
+}
+
+/// Sets one part of the offset, the other stays.
+fn change_offset(geom: GeomId, change: impl FnOnce(&mut Frame)) -> Outcome<()> {
+    let (geom, _) = on_body(geom)?;
+    let mut offset = geom.offset().unwrap_or(Frame::IDENTITY);
+    change(&mut offset);
+    set_offset(geom, offset.position, &offset.rotation)
+}
+
+fn set_offset_world_rotation(geom: GeomId, rotation: &Mat3) -> Outcome<()> {
+    let (geom, body) = on_body(geom)?;
+    let position = body.point_to_local(geom.frame().position);
+    set_offset(geom, position, &(body.rotation.transpose() * *rotation))
+}
+
+fn unit(q: InQuaternion) -> Outcome<Mat3> {
+    let q = quat(&q.get()?).normalized();
+    Ok(q.ok_or(Fault::internal("assertion \"the quaternion can be normalised\" failed"))?.to_matrix())
+}
+
+/// Where the pose's numbers are: in the body's record if the geom is just where the body is.
+fn pointer<T>(
+    geom: GeomId,
+    own: fn(&GeomRecord) -> &Cell<T>,
+    bodys: fn(&crate::record::BodyRecord) -> &Cell<T>,
+) -> Outcome<*const Real> {
+    let geom = placeable(geom)?;
+    geom.frame();
+    let cell = match geom.on_body() {
+        Some(body) if !geom.has_offset.get() => bodys(body),
+        _ => own(geom),
+    };
+    Ok(cell.as_ptr().cast_const().cast())
+}
+
+/// A point or vector by the geom's frame; one without a pose gives it back.
+fn by_frame(
+    geom: GeomId,
+    v: Vec3,
+    result: OutVector,
+    work: impl FnOnce(&Frame, Vec3) -> Vec3,
+) -> Outcome<()> {
+    let geom = geom.get()?;
+    result.set(vector3(if geom.is_placeable() { work(&geom.frame(), v) } else { v }))
+}
+
+fn offset_position(geom: &GeomRecord) -> Real4 {
+    if geom.has_offset.get() { geom.offset_position.get() } else { NO_OFFSET }
+}
+
+fn offset_rotation(geom: &GeomRecord) -> Real12 {
+    if geom.has_offset.get() { geom.offset_rotation.get() } else { NO_TURN }
+}
+
+export! {
+    fn dGeomSetPosition(geom: GeomId, x: Real, y: Real, z: Real) {
+        let geom = placeable(geom)?;
+        let mut frame = geom.frame();
+        frame.position = vec3(x, y, z);
+        place(geom, &frame, false)?
+    }
+    fn dGeomSetRotation(geom: GeomId, rotation: InMatrix) {
+        let geom = placeable(geom)?;
+        let mut frame = geom.frame();
+        frame.rotation = mat3(&rotation.get()?);
+        place(geom, &frame, true)?
+    }
+    fn dGeomSetQuaternion(geom: GeomId, q: InQuaternion) {
+        let geom = placeable(geom)?;
+        let mut frame = geom.frame();
+        // A free geom's is taken as it is.
+        frame.rotation = if geom.on_body().is_some() { unit(q)? } else { quat(&q.get()?).to_matrix() };
+        place(geom, &frame, true)?
+    }
+    fn dGeomGetPosition(geom: GeomId) -> *const Real {
+        pointer(geom, |geom| &geom.position, |body| &body.position)?
+    }
+    fn dGeomGetRotation(geom: GeomId) -> *const Real {
+        pointer(geom, |geom| &geom.rotation, |body| &body.rotation)?
+    }
+    fn dGeomCopyPosition(geom: GeomId, position: OutVector) {
+        position.set(vector3(placeable(geom)?.frame().position))?
+    }
+    fn dGeomCopyRotation(geom: GeomId, rotation: OutMatrix) {
+        let frame = placeable(geom)?.frame();
+        rotation.set(matrix3(&frame.rotation))?
+    }
+    fn dGeomGetQuaternion(geom: GeomId, q: OutQuaternion) {
+        let geom = placeable(geom)?;
+        match geom.on_body() {
+            Some(body) if !geom.has_offset.get() => q.set(body.current().quaternion.get())?,
+            _ => q.set(quaternion(Quat::from_matrix(&geom.frame().rotation)))?,
+        }
+    }
+
+    fn dGeomSetOffsetPosition(geom: GeomId, x: Real, y: Real, z: Real) {
+        change_offset(geom, |offset| offset.position = vec3(x, y, z))?
+    }
+    fn dGeomSetOffsetRotation(geom: GeomId, rotation: InMatrix) {
+        let rotation = mat3(&rotation.get()?);
+        change_offset(geom, |offset| offset.rotation = rotation)?
+    }
+    fn dGeomSetOffsetQuaternion(geom: GeomId, q: InQuaternion) {
+        let rotation = quat(&q.get()?).to_matrix();
+        change_offset(geom, |offset| offset.rotation = rotation)?
+    }
+    fn dGeomSetOffsetWorldPosition(geom: GeomId, x: Real, y: Real, z: Real) {
+        let (_, body) = on_body(geom)?;
+        change_offset(geom, |offset| offset.position = body.point_to_local(vec3(x, y, z)))?
+    }
+    fn dGeomSetOffsetWorldRotation(geom: GeomId, rotation: InMatrix) {
+        set_offset_world_rotation(geom, &mat3(&rotation.get()?))?
+    }
+    fn dGeomSetOffsetWorldQuaternion(geom: GeomId, q: InQuaternion) {
+        set_offset_world_rotation(geom, &quat(&q.get()?).to_matrix())?
+    }
+    fn dGeomClearOffset(geom: GeomId) {
+        let geom = placeable(geom)?;
+        if geom.has_offset.replace(false) {
+            geom.moved()?;
+        }
+    }
+    fn dGeomIsOffset(geom: GeomId) -> c_int { placeable(geom)?.has_offset.get().into() }
+    fn dGeomGetOffsetPosition(geom: GeomId) -> *const Real {
+        let geom = placeable(geom)?;
+        if geom.has_offset.get() { geom.offset_position.as_ptr().cast_const().cast() } else { NO_OFFSET.as_ptr() }
+    }
+    fn dGeomGetOffsetRotation(geom: GeomId) -> *const Real {
+        let geom = placeable(geom)?;
+        if geom.has_offset.get() { geom.offset_rotation.as_ptr().cast_const().cast() } else { NO_TURN.as_ptr() }
+    }
+    fn dGeomCopyOffsetPosition(geom: GeomId, position: OutVector) {
+        position.set(vector3(vector(&offset_position(placeable(geom)?))))?
+    }
+    fn dGeomCopyOffsetRotation(geom: GeomId, rotation: OutMatrix) {
+        rotation.set(offset_rotation(placeable(geom)?))?
+    }
+    fn dGeomGetOffsetQuaternion(geom: GeomId, q: OutQuaternion) {
+        q.set(quaternion(Quat::from_matrix(&mat3(&offset_rotation(placeable(geom)?)))))?
+    }
+
+    fn dGeomGetRelPointPos(geom: GeomId, x: Real, y: Real, z: Real, result: OutVector) {
+        by_frame(geom, vec3(x, y, z), result, Frame::point_to_world)?
+    }
+    fn dGeomGetPosRelPoint(geom: GeomId, x: Real, y: Real, z: Real, result: OutVector) {
+        by_frame(geom, vec3(x, y, z), result, Frame::point_to_local)?
+    }
+    fn dGeomVectorToWorld(geom: GeomId, x: Real, y: Real, z: Real, result: OutVector) {
+        by_frame(geom, vec3(x, y, z), result, Frame::vector_to_world)?
+    }
+    fn dGeomVectorFromWorld(geom: GeomId, x: Real, y: Real, z: Real, result: OutVector) {
+        by_frame(geom, vec3(x, y, z), result, Frame::vector_to_local)?
+    }
+}

@@ -1,0 +1,249 @@
+//! Geoms by shape: making them, their sizes, depths of points.
+
+use super::{GeomId, GeomRecord, class, pose};
+use crate::fault::{Fault, Outcome, export};
+use crate::real::{Out, OutVector, Real, f, r, vec3, vector3};
+use crate::record::Required;
+use core::ffi::{c_int, c_uint};
+use ferrode_collide::{
+    Capsule, Convex, Cuboid, Cylinder, Plane, Ray, Shape, ShapeError, Sphere, point_depth,
+};
+use ferrode_math::{Mat3, Vec3, plane_space};
+
+fn made<S: Into<Shape>>(shape: Result<S, ShapeError>) -> Outcome<Shape> {
+    shape.map(Into::into).map_err(|_| Fault::ARGUMENT)
+}
+
+fn create<S: Into<Shape>>(class: c_int, space: GeomId, shape: Result<S, ShapeError>) -> Outcome<GeomId> {
+    GeomRecord::create(class, Some(made(shape)?), None, space)
+}
+
+fn of_class(geom: GeomId, class: c_int, fault: &'static str) -> Outcome<&'static GeomRecord> {
+    let geom = geom.get()?;
+    geom.require_class(class, fault)?;
+    Ok(geom)
+}
+
+/// Gives a geom another shape of its class.
+fn reshape<S: Into<Shape>>(geom: &GeomRecord, shape: Result<S, ShapeError>) -> Outcome<()> {
+    let shape = made(shape)?;
+    if let Some(parent) = geom.parent() {
+        parent.require_unlocked()?;
+    }
+    *geom.shape.borrow_mut() = Some(shape);
+    geom.tell_space();
+    geom.moved()
+}
+
+/// Reads a geom's shape, which is of the kind that its class says.
+macro_rules! shape_of {
+    ($geom:ident, $kind:ident) => {
+        match &*$geom.shape.borrow() {
+            Some(Shape::$kind(shape)) => shape.clone(),
+            _ => return Err(Fault::ARGUMENT),
+        }
+    };
+}
+
+fn sphere(geom: GeomId) -> Outcome<&'static GeomRecord> {
+    of_class(geom, class::SPHERE, "argument not a sphere")
+}
+
+fn cuboid(geom: GeomId) -> Outcome<&'static GeomRecord> {
+    of_class(geom, class::BOX, "argument not a box")
+}
+
+fn capsule(geom: GeomId) -> Outcome<&'static GeomRecord> {
+    of_class(geom, class::CAPSULE, "argument not a ccylinder")
+}
+
+fn cylinder(geom: GeomId) -> Outcome<&'static GeomRecord> {
+    of_class(geom, class::CYLINDER, "argument not a ccylinder")
+}
+
+fn plane(geom: GeomId) -> Outcome<&'static GeomRecord> {
+    of_class(geom, class::PLANE, "argument not a plane")
+}
+
+fn ray(geom: GeomId) -> Outcome<&'static GeomRecord> {
+    of_class(geom, class::RAY, "argument not a ray")
+}
+
+/// A plane by its equation; one without a normal faces along x, as in ODE.
+fn plane_by(a: Real, b: Real, c: Real, d: Real) -> Result<Plane, ShapeError> {
+    let normal = vec3(a, b, c);
+    if normal == Vec3::ZERO { Plane::new(Vec3::X, 0.0) } else { Plane::new(normal, f(d)) }
+}
+
+fn depth(geom: &GeomRecord, x: Real, y: Real, z: Real) -> Outcome<Real> {
+    let frame = geom.frame();
+    let depth = geom.shape.borrow().as_ref().and_then(|shape| point_depth(shape, &frame, vec3(x, y, z)));
+    Ok(r(depth.ok_or(Fault::ARGUMENT)?))
+}
+
+/// Changes a ray's options.
+fn ray_options(geom: GeomId, change: impl FnOnce(&mut Ray)) -> Outcome<()> {
+    if let Some(Shape::Ray(shape)) = &mut *ray(geom)?.shape.borrow_mut() {
+        change(shape);
+    }
+    Ok(())
+}
+
+fn ray_option(geom: GeomId, option: impl FnOnce(&Ray) -> bool) -> Outcome<c_int> {
+    let geom = ray(geom)?;
+    Ok(option(&shape_of!(geom, Ray)).into())
+}
+
+/// The polyhedron of a program's arrays: corners, and for each face the number of its corners and these.
+fn convex_by(
+    points: *const Real,
+    point_count: c_uint,
+    polygons: *const c_uint,
+    plane_count: c_uint,
+) -> Outcome<Shape> {
+    if points.is_null() || polygons.is_null() {
+        return Err(Fault::ARGUMENT);
+    }
+    // SAFETY: not null, and three numbers a point (the exported functions' contract).
+    let points = unsafe { core::slice::from_raw_parts(points, 3 * point_count as usize) };
+    let points: Vec<Vec3> = points.chunks_exact(3).map(|p| vec3(p[0], p[1], p[2])).collect();
+    let mut faces = Vec::with_capacity(plane_count as usize);
+    let mut at = 0;
+    for _ in 0..plane_count {
+        // SAFETY: as above: each face is a number of corners and as many indices.
+        let count = unsafe { polygons.add(at).read() } as usize;
+        // SAFETY: as above.
+        let face: &[u32] = unsafe { core::slice::from_raw_parts(polygons.add(at + 1), count) };
+        faces.push(face.to_vec());
+        at += 1 + count;
+    }
+    made(Convex::from_faces(&points, &faces))
+}
+
+export! {
+    fn dCreateSphere(space: GeomId, radius: Real) -> GeomId { create(class::SPHERE, space, Sphere::new(f(radius)))? }
+    fn dGeomSphereSetRadius(geom: GeomId, radius: Real) { reshape(sphere(geom)?, Sphere::new(f(radius)))? }
+    fn dGeomSphereGetRadius(geom: GeomId) -> Real {
+        let geom = sphere(geom)?;
+        r(shape_of!(geom, Sphere).radius())
+    }
+    fn dGeomSpherePointDepth(geom: GeomId, x: Real, y: Real, z: Real) -> Real { depth(sphere(geom)?, x, y, z)? }
+
+    fn dCreateBox(space: GeomId, lx: Real, ly: Real, lz: Real) -> GeomId {
+        create(class::BOX, space, Cuboid::new(vec3(lx, ly, lz)))?
+    }
+    fn dGeomBoxSetLengths(geom: GeomId, lx: Real, ly: Real, lz: Real) {
+        reshape(cuboid(geom)?, Cuboid::new(vec3(lx, ly, lz)))?
+    }
+    fn dGeomBoxGetLengths(geom: GeomId, lengths: OutVector) {
+        let geom = cuboid(geom)?;
+        lengths.set(vector3(shape_of!(geom, Cuboid).sides()))?
+    }
+    fn dGeomBoxPointDepth(geom: GeomId, x: Real, y: Real, z: Real) -> Real { depth(cuboid(geom)?, x, y, z)? }
+
+    fn dCreateCapsule(space: GeomId, radius: Real, length: Real) -> GeomId {
+        create(class::CAPSULE, space, Capsule::new(f(radius), f(length)))?
+    }
+    fn dGeomCapsuleSetParams(geom: GeomId, radius: Real, length: Real) {
+        reshape(capsule(geom)?, Capsule::new(f(radius), f(length)))?
+    }
+    fn dGeomCapsuleGetParams(geom: GeomId, radius: Out<Real>, length: Out<Real>) {
+        let geom = capsule(geom)?;
+        let shape = shape_of!(geom, Capsule);
+        radius.set_if_wanted([r(shape.radius())]);
+        length.set_if_wanted([r(shape.length())])
+    }
+    fn dGeomCapsulePointDepth(geom: GeomId, x: Real, y: Real, z: Real) -> Real { depth(capsule(geom)?, x, y, z)? }
+
+    fn dCreateCylinder(space: GeomId, radius: Real, length: Real) -> GeomId {
+        create(class::CYLINDER, space, Cylinder::new(f(radius), f(length)))?
+    }
+    fn dGeomCylinderSetParams(geom: GeomId, radius: Real, length: Real) {
+        reshape(cylinder(geom)?, Cylinder::new(f(radius), f(length)))?
+    }
+    fn dGeomCylinderGetParams(geom: GeomId, radius: Out<Real>, length: Out<Real>) {
+        let geom = cylinder(geom)?;
+        let shape = shape_of!(geom, Cylinder);
+        radius.set_if_wanted([r(shape.radius())]);
+        length.set_if_wanted([r(shape.length())])
+    }
+
+    fn dCreatePlane(space: GeomId, a: Real, b: Real, c: Real, d: Real) -> GeomId {
+        create(class::PLANE, space, plane_by(a, b, c, d))?
+    }
+    fn dGeomPlaneSetParams(geom: GeomId, a: Real, b: Real, c: Real, d: Real) {
+        reshape(plane(geom)?, plane_by(a, b, c, d))?
+    }
+    fn dGeomPlaneGetParams(geom: GeomId, params: Out<Real, 4>) {
+        let geom = plane(geom)?;
+        let shape = shape_of!(geom, Plane);
+        let [x, y, z] = vector3(shape.normal());
+        params.set([x, y, z, r(shape.d())])?
+    }
+    fn dGeomPlanePointDepth(geom: GeomId, x: Real, y: Real, z: Real) -> Real { depth(plane(geom)?, x, y, z)? }
+
+    fn dCreateRay(space: GeomId, length: Real) -> GeomId { create(class::RAY, space, Ray::new(f(length)))? }
+    fn dGeomRaySetLength(geom: GeomId, length: Real) {
+        let geom = ray(geom)?;
+        let old = shape_of!(geom, Ray);
+        let ray = Ray::new(f(length)).map(|mut new| {
+            new.first_contact = old.first_contact;
+            new.backface_cull = old.backface_cull;
+            new.closest_hit = old.closest_hit;
+            new
+        });
+        reshape(geom, ray)?
+    }
+    fn dGeomRayGetLength(geom: GeomId) -> Real {
+        let geom = ray(geom)?;
+        r(shape_of!(geom, Ray).length())
+    }
+    /// The rotation's first two columns are filled in at right angles; ODE leaves what was there.
+    fn dGeomRaySet(geom: GeomId, px: Real, py: Real, pz: Real, dx: Real, dy: Real, dz: Real) {
+        let geom = ray(geom)?;
+        let direction = vec3(dx, dy, dz).normalized();
+        let direction = direction.ok_or(Fault::internal("assertion \"!bSafeNormalize3Fault\" failed"))?;
+        let (p, q) = plane_space(direction);
+        let mut frame = geom.frame();
+        frame.position = vec3(px, py, pz);
+        frame.rotation = Mat3::from_columns(p, q, direction);
+        pose::place(geom, &frame, true)?
+    }
+    fn dGeomRayGet(geom: GeomId, start: OutVector, direction: OutVector) {
+        let frame = ray(geom)?.frame();
+        start.set(vector3(frame.position))?;
+        direction.set(vector3(frame.axis(2)))?
+    }
+    fn dGeomRaySetParams(geom: GeomId, first_contact: c_int, backface_cull: c_int) {
+        ray_options(geom, |ray| {
+            ray.first_contact = first_contact != 0;
+            ray.backface_cull = backface_cull != 0;
+        })?
+    }
+    fn dGeomRayGetParams(geom: GeomId, first_contact: Out<c_int>, backface_cull: Out<c_int>) {
+        first_contact.set_if_wanted([ray_option(geom, |ray| ray.first_contact)?]);
+        backface_cull.set_if_wanted([ray_option(geom, |ray| ray.backface_cull)?])
+    }
+    fn dGeomRaySetFirstContact(geom: GeomId, on: c_int) { ray_options(geom, |ray| ray.first_contact = on != 0)? }
+    fn dGeomRayGetFirstContact(geom: GeomId) -> c_int { ray_option(geom, |ray| ray.first_contact)? }
+    fn dGeomRaySetBackfaceCull(geom: GeomId, on: c_int) { ray_options(geom, |ray| ray.backface_cull = on != 0)? }
+    fn dGeomRayGetBackfaceCull(geom: GeomId) -> c_int { ray_option(geom, |ray| ray.backface_cull)? }
+    fn dGeomRaySetClosestHit(geom: GeomId, on: c_int) { ray_options(geom, |ray| ray.closest_hit = on != 0)? }
+    fn dGeomRayGetClosestHit(geom: GeomId) -> c_int { ray_option(geom, |ray| ray.closest_hit)? }
+
+    fn dCreateConvex(
+        space: GeomId, _planes: *const Real, plane_count: c_uint, points: *const Real, point_count: c_uint,
+        polygons: *const c_uint,
+    ) -> GeomId {
+        let shape = convex_by(points, point_count, polygons, plane_count)?;
+        GeomRecord::create(class::CONVEX, Some(shape), None, space)?
+    }
+    fn dGeomSetConvex(
+        geom: GeomId, _planes: *const Real, plane_count: c_uint, points: *const Real, point_count: c_uint,
+        polygons: *const c_uint,
+    ) {
+        let geom = of_class(geom, class::CONVEX, "argument not a convex shape")?;
+        let shape = convex_by(points, point_count, polygons, plane_count)?;
+        reshape(geom, Ok(shape))?
+    }
+}
