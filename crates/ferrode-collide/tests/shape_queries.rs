@@ -315,3 +315,73 @@ fn odd_questions() {
     let hit = queries.shape_cast(&floor, &Pose::IDENTITY, Vec3::Z * 4.0, all).unwrap();
     assert!(hit.geom == cube && (hit.fraction - 0.25).abs() < 1e-12, "{hit:?}");
 }
+
+/// A slab between two heights that only balls, rays and other slabs can touch.
+#[derive(Debug)]
+struct Slab(f64);
+
+impl CustomShape for Slab {
+    fn aabb(&self, frame: &Frame) -> ferrode_math::Aabb {
+        let mut aabb = ferrode_math::Aabb::EVERYTHING;
+        (aabb.min.z, aabb.max.z) = (frame.position.z - self.0, frame.position.z + self.0);
+        aabb
+    }
+
+    fn collide(&self, frame: &Frame, other: &Shape, at: &Frame, out: &mut Contacts<'_>) -> bool {
+        let z = at.position.z - frame.position.z;
+        let up = if z < 0.0 { -1.0 } else { 1.0 };
+        match other {
+            Shape::Sphere(ball) => {
+                let depth = self.0 + ball.radius() - z.abs();
+                if depth >= 0.0 {
+                    out.push(at.position - Vec3::Z * (up * ball.radius()), Vec3::Z * -up, depth);
+                }
+            }
+            Shape::Ray(ray) => {
+                let (from, along) = ray.line(at);
+                let distance = (z.abs() - self.0) / (-up * along.z);
+                if distance >= 0.0 && distance <= ray.length() {
+                    out.push(from + along * distance, Vec3::Z * -up, distance);
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn point_depth(&self, frame: &Frame, point: Vec3) -> Option<f64> {
+        Some(self.0 - (point.z - frame.position.z).abs())
+    }
+}
+
+#[test]
+fn own_shapes_collide_in_spaces() {
+    for kind in kinds() {
+        let mut colliders = Colliders::new();
+        let space = colliders.add_space(None, kind).unwrap();
+        let slab = colliders.add_geom(Some(space), Geom::new(Custom::new(Slab(0.5)))).unwrap();
+        let at = Pose::from_position(Vec3::new(3.0, -2.0, 0.75));
+        let ball = colliders.add_geom(Some(space), Geom::new(Sphere::new(0.5).unwrap()).at(at)).unwrap();
+        let cube = Geom::new(Cuboid::new(Vec3::splat(1.0)).unwrap()).at(at);
+        let cube = colliders.add_geom(Some(space), cube).unwrap();
+        let mut pairs = Vec::new();
+        colliders.collide(space, |_, a, b| pairs.push((a, b))).unwrap();
+        assert_eq!(pairs.len(), 3, "{kind:?}");
+        let mut contacts = Vec::new();
+        let options = CollideOptions::new(4);
+        assert_eq!(colliders.geom_contacts(ball, slab, options, &mut contacts), 1);
+        assert_eq!(colliders.geom_contacts(slab, ball, options, &mut contacts), 1);
+        assert_eq!(colliders.geom_contacts(slab, cube, options, &mut contacts), 0);
+        let [a, b] = [contacts[0].point, contacts[1].point];
+        assert_eq!((a.normal, a.depth, b.normal), (Vec3::Z, 0.25, -Vec3::Z));
+        assert_eq!(colliders.point_depth(slab, Vec3::X), Some(0.5));
+        let queries = colliders.queries(space).unwrap();
+        let hit = queries.ray_cast(Vec3::Z * 4.0, -Vec3::Z, 9.0, |_, _| true).unwrap();
+        assert!(hit.geom == slab && hit.distance == 3.5 && hit.normal == Vec3::Z, "{kind:?} {hit:?}");
+        let mut found = Vec::new();
+        queries.geoms_at(Vec3::new(0.0, 0.0, 0.25), |key, depth| found.push((key, depth)));
+        assert_eq!(found, [(slab, 0.25)]);
+        // What it says nothing about it does not have.
+        assert_eq!(colliders.distance(slab, ball), None);
+    }
+}

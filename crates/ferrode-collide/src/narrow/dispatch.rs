@@ -237,8 +237,25 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     ],
 ];
 
-fn index(kind: ShapeKind) -> usize {
-    kind as usize
+fn pair(a: ShapeKind, b: ShapeKind) -> Option<Collider> {
+    if a == ShapeKind::Custom || b == ShapeKind::Custom {
+        return Some(run_custom);
+    }
+    PAIRS[a as usize][b as usize]
+}
+
+/// The first custom shape is asked, then the second.
+fn run_custom(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    if let Shape::Custom(custom) = a
+        && custom.get().collide(fa, b, fb, out)
+    {
+        return;
+    }
+    if let Shape::Custom(custom) = b
+        && custom.get().collide(fb, a, fa, out)
+    {
+        out.swap();
+    }
 }
 
 /// Drops contacts that are no numbers, which only poses that are none, or nearly overflow, can cause; and lifts depths
@@ -258,9 +275,9 @@ fn keep_sound(contacts: &mut Contacts<'_>) {
     contacts.truncate(kept);
 }
 
-/// Whether shapes of these kinds can touch at all: two planes, or two rays, cannot.
+/// Whether shapes of these kinds can touch at all: two planes, or two rays, cannot; of custom shapes it is not known.
 pub fn collides(a: ShapeKind, b: ShapeKind) -> bool {
-    PAIRS[index(a)][index(b)].is_some()
+    pair(a, b).is_some()
 }
 
 /// Finds the contacts of two shapes, adds them to `out` and returns their number.
@@ -282,7 +299,7 @@ pub fn collide_frames(
     options: CollideOptions,
     out: &mut Vec<GeomContact>,
 ) -> usize {
-    let Some(collider) = PAIRS[index(a.0.kind())][index(b.0.kind())] else { return 0 };
+    let Some(collider) = pair(a.0.kind(), b.0.kind()) else { return 0 };
     if options.max_contacts == 0 {
         return 0;
     }
@@ -294,7 +311,7 @@ pub fn collide_frames(
 
 /// Whether two shapes touch.
 pub fn touches(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> bool {
-    PAIRS[index(a.0.kind())][index(b.0.kind())].is_some_and(|collider| {
+    pair(a.0.kind(), b.0.kind()).is_some_and(|collider| {
         let mut found = Vec::new();
         // Any contact would do, but boxes that are asked for any report contacts that are none.
         let mut out = Contacts::new(&mut found, CollideOptions::new(1));

@@ -44,7 +44,11 @@ impl<'a> Body<'a> {
             Shape::Ellipsoid(s) => Self::new(Core::Ellipsoid(*s), 0.0, frame, origin),
             Shape::Cone(s) => Self::new(Core::Cone(s.radius(), 0.5 * s.length()), 0.0, frame, origin),
             Shape::Convex(s) => Self::new(Core::Hull(s, s.reach()), 0.0, frame, origin),
-            Shape::Plane(_) | Shape::Ray(_) | Shape::TriMesh(_) | Shape::Heightfield(_) => return None,
+            Shape::Plane(_)
+            | Shape::Ray(_)
+            | Shape::TriMesh(_)
+            | Shape::Heightfield(_)
+            | Shape::Custom(_) => return None,
         })
     }
 

@@ -129,6 +129,7 @@ pub fn point_depth(shape: &Shape, frame: &Frame, point: Vec3) -> Option<f64> {
             if depth >= 0.0 { depth } else { -closest_point(shape, frame, point)?.distance }
         }
         Shape::Ray(_) => return None,
+        Shape::Custom(s) => s.get().point_depth(frame, point)?,
         _ => -closest_point(shape, frame, point)?.distance,
     })
 }

@@ -4,6 +4,7 @@ mod capsule;
 mod cone;
 mod convex;
 mod cuboid;
+mod custom;
 mod cylinder;
 mod ellipsoid;
 mod heightfield;
@@ -17,6 +18,7 @@ pub use capsule::Capsule;
 pub use cone::Cone;
 pub use convex::Convex;
 pub use cuboid::Cuboid;
+pub use custom::{Custom, CustomShape};
 pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use heightfield::Heightfield;
@@ -57,6 +59,8 @@ pub enum Shape {
     Cone(Cone),
     /// A grid of heights.
     Heightfield(Heightfield),
+    /// A kind of one's own.
+    Custom(Custom),
 }
 
 /// The kind of a shape: its row and column in the pair matrix.
@@ -85,6 +89,8 @@ pub enum ShapeKind {
     Cone,
     /// [`Heightfield`].
     Heightfield,
+    /// [`Custom`]: pairs with it are not in the matrix.
+    Custom,
 }
 
 impl Shape {
@@ -102,6 +108,7 @@ impl Shape {
             Self::Ellipsoid(_) => ShapeKind::Ellipsoid,
             Self::Cone(_) => ShapeKind::Cone,
             Self::Heightfield(_) => ShapeKind::Heightfield,
+            Self::Custom(_) => ShapeKind::Custom,
         }
     }
 
@@ -124,6 +131,7 @@ impl Shape {
             Self::Ellipsoid(s) => s.aabb(frame),
             Self::Cone(s) => s.aabb(frame),
             Self::Heightfield(s) => s.aabb(frame),
+            Self::Custom(s) => s.get().aabb(frame),
         }
     }
 
@@ -140,6 +148,7 @@ impl Shape {
             Self::TriMesh(s) => s.volume(),
             Self::Ellipsoid(s) => s.volume(),
             Self::Cone(s) => s.volume(),
+            Self::Custom(s) => s.get().volume(),
         }
     }
 
@@ -158,9 +167,7 @@ impl Shape {
             Self::Cylinder(s) => s.radius() == 0.0 || s.length() == 0.0,
             Self::Ellipsoid(s) => s.radii().to_array().contains(&0.0),
             Self::Cone(s) => s.radius() == 0.0 || s.length() == 0.0,
-            Self::Plane(_) | Self::Ray(_) | Self::Convex(_) | Self::TriMesh(_) | Self::Heightfield(_) => {
-                false
-            }
+            _ => false,
         }
     }
 }
