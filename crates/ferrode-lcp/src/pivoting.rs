@@ -6,7 +6,7 @@
 //! problems", 1994; A. Enzenhöfer, N. Lefebvre, S. Andrews, "Efficient block pivoting for multibody simulations with contact", I3D
 //! 2019). From the guess of the step before, that takes one or two factorisations. It is the full Newton step on a convex function, and can
 //! cycle: loose piles of boxes send it, and Newton's method with line search, through hundreds of factorisations. So when the number
-//! of wrong rows has failed to halve three times, an interior-point method ([`interior`]) finds a better guess in about 20, from which one or
+//! of wrong rows has failed to halve three times, an interior-point method (`interior`) finds a better guess in about 20, from which one or
 //! two pivots are left. Should pivoting stall again, its steps are shortened by exact line search ([`line`]), which cannot cycle.
 //!
 //! Friction is ODE's: first the problem without rows that have a friction index, then their bounds frozen at `|hi x_f|` and the whole

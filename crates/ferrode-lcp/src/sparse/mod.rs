@@ -21,15 +21,15 @@
 //! ```
 //!
 //! `H` is stiff: `S^-1` is 1e8 and more against a mass of 1, so one solve knows the forces to seven digits or so. Refinement in the
-//! full system of `y` and `lambda` ([`system`]) brings the rest: each step shrinks the error by about `eps |J|^2 / S`, and `S` is
+//! full system of `y` and `lambda` (`system`) brings the rest: each step shrinks the error by about `eps |J|^2 / S`, and `S` is
 //! never taken below `1e-10 |J|^2` (what is missing is made good by proximal steps, [`crate::pivoting`]). No row is ever eliminated
 //! by dividing by its own `S` alone after its bodies are gone, which would lose everything.
 //!
-//! - [`ordering`]: which body to eliminate next, and the shape of the factor;
-//! - [`symbolic`]: that shape, with where each pair of bodies stands in it, kept while the topology stands;
-//! - [`factor`]: the numbers, `H = L L^T`, column by column from the left, so that after a change only the columns from the
+//! - `ordering`: which body to eliminate next, and the shape of the factor;
+//! - `symbolic`: that shape, with where each pair of bodies stands in it, kept while the topology stands;
+//! - `factor`: the numbers, `H = L L^T`, column by column from the left, so that after a change only the columns from the
 //!   changed bodies to the root are done again;
-//! - [`kernel6`]: blocks of 6x6.
+//! - `kernel6`: blocks of 6x6.
 //!
 //! (T. Davis, "Direct Methods for Sparse Linear Systems", 2006; D. Baraff, "Linear-time dynamics using Lagrange multipliers",
 //! SIGGRAPH 1996; J. Liu, "The role of elimination trees in sparse factorization", 1990.)
