@@ -1,7 +1,7 @@
 //! How the time of one exact step grows with the size of the mechanism, beside libode's `dWorldStep`.
 //!
 //! ```text
-//! cargo run --release --bin growth -- [--smallest N] [--largest N] [--case WORD] [--reps N]
+//! cargo run --release --bin growth -- [--smallest N] [--largest N] [--case WORD] [--reps N] [--from STEP] [--steps N]
 //! ```
 //!
 //! Contacts are found by Ferrode and given to both engines. Timed are the making of contact joints, the step, and removing them. Printed per
@@ -323,18 +323,23 @@ fn main() {
     let smallest: usize = value("--smallest").and_then(|v| v.parse().ok()).unwrap_or(0);
     let reps: usize = value("--reps").and_then(|v| v.parse().ok()).unwrap_or(3);
     let wanted = value("--case").unwrap_or_default();
+    let steps = |name: &str| value(name).and_then(|v| v.parse().ok());
+    let (before, timed) = (steps("--from"), steps("--steps"));
     println!(
-        "case,n,rows,ms,factorisations,most,newton,us_per_factorisation,blocks,uncertified,fell_back,joint_error,libode_ms,ratio,quick_ms,libode_quick_ms"
+        "case,n,rows,ms,factorisations,most,newton,us_per_factorisation,blocks,uncertified,fell_back,joint_error,libode_ms,ratio,quick_ms,libode_quick_ms,highest"
     );
     for case in CASES.iter().filter(|c| c.name.contains(&wanted)) {
+        let steps = [before.unwrap_or(case.steps[0]), timed.unwrap_or(case.steps[1])];
+        let case = &Case { steps, ..*case };
         let mut points = Vec::new();
         for n in case.sizes.iter().copied().filter(|n| (smallest..=largest).contains(n)) {
             let (mut figures, mut quick) = (Figures::default(), Figures::default());
             let (mut theirs, mut theirs_quick) = (Vec::new(), Vec::new());
-            let mut error = 0.0;
+            let (mut error, mut highest) = (0.0, 0.0);
             for _ in 0..reps {
                 let (engine, lists) = run(case, n, Method::Direct, &mut figures);
                 error = engine.joint_error();
+                highest = engine.poses().iter().map(|(p, _)| p.z).fold(f64::NEG_INFINITY, f64::max);
                 let ode = |method: Method, times: &mut Vec<f64>| {
                     let mut engine: Ode = new(case, n);
                     for (step, list) in lists.iter().enumerate() {
@@ -359,7 +364,7 @@ fn main() {
             let per_factorisation = median / per_step.max(1.0);
             points.push((n as f64, per_factorisation));
             println!(
-                "{},{n},{},{:.4},{per_step:.1},{},{},{:.1},{},{},{},{error:.1e},{:.3},{:.1},{:.4},{:.4}",
+                "{},{n},{},{:.4},{per_step:.1},{},{},{:.1},{},{},{},{error:.1e},{:.3},{:.1},{:.4},{:.4},{highest:.3}",
                 case.name,
                 figures.rows,
                 median * 1e3,
