@@ -114,25 +114,48 @@ impl Colliders {
         }
     }
 
-    /// Brings a space, and the dirty ones in it, up to date. Dirty members are at the front of the list.
+    /// Brings a space, and the dirty ones in it, up to date.
     pub(super) fn clean(&mut self, space: u32) {
-        let mut next = self.space_at(space).and_then(|s| s.broad.members().first());
-        while let Some(id) = next {
-            if !self.nodes.at(id.0).is_some_and(|n| n.dirty) {
-                break;
+        let marked = |c: &Self, k: usize| c.space_at(space)?.broad.get().marked()?.get(k).copied();
+        if self.space_at(space).is_some_and(|s| s.broad.get().marked().is_some()) {
+            let mut k = 0;
+            while let Some(id) = marked(self, k) {
+                // Some have left since, and may be elsewhere.
+                if self.nodes.at(id.0).is_some_and(|n| n.dirty && n.parent == Some(space)) {
+                    self.clean_member(id);
+                }
+                k += 1;
             }
-            if self.space_at(id.0).is_some() {
-                self.clean(id.0);
+        } else {
+            // Dirty members are at the front of the list.
+            let mut next = self.space_at(space).and_then(|s| s.broad.members().first());
+            while let Some(id) = next {
+                if !self.nodes.at(id.0).is_some_and(|n| n.dirty) {
+                    break;
+                }
+                self.clean_member(id);
+                next = self.space_at(space).and_then(|s| s.broad.members().after(&self.table, id));
             }
-            self.refresh_aabb(id.0);
-            if let Some(node) = self.nodes.at_mut(id.0) {
-                node.dirty = false;
-            }
-            next = self.space_at(space).and_then(|s| s.broad.members().after(&self.table, id));
         }
         self.refresh_aabb(space);
         if let Some(Content::Space(node)) = self.nodes.at_mut(space).map(|n| &mut n.content) {
             node.broad.get_mut().update(&self.table);
+        }
+    }
+
+    fn clean_member(&mut self, id: ProxyId) {
+        let Some(node) = self.nodes.at_mut(id.0) else { return };
+        node.dirty = false;
+        match &node.content {
+            Content::Geom(geom) => {
+                if core::mem::take(&mut node.aabb_stale) {
+                    self.table.get_mut(id).aabb = geom.aabb();
+                }
+            }
+            Content::Space(_) => {
+                self.clean(id.0);
+                self.refresh_aabb(id.0);
+            }
         }
     }
 

@@ -226,7 +226,7 @@ struct Node {
 /// Geoms in a tree of spaces.
 ///
 /// Lists and pairs come in ODE's order: the newest member of a space first, and a member that moves goes to the
-/// front. Boxes are recomputed when a question needs them, so [`set_pose`](Self::set_pose) is cheap.
+/// front (but in a [`Bvh`](SpaceKind::Bvh) space, which is not ODE's, all stay in order of insertion). Boxes are recomputed when a question needs them, so [`set_pose`](Self::set_pose) is cheap.
 ///
 /// ODE locks a space while it reports pairs, and errs when a callback changes it. Here callbacks get a shared
 /// reference, so that the compiler turns such a program away.

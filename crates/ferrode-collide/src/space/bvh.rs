@@ -266,9 +266,13 @@ impl BroadPhase for BvhSpace {
         self.entries[id.0 as usize] = ABSENT;
     }
 
-    fn moved(&mut self, table: &mut ProxyTable, id: ProxyId) {
-        self.members.to_front(table, id);
+    /// The list stays as it is: to reorder it costs more than all else that moving a geom does.
+    fn moved(&mut self, _: &mut ProxyTable, id: ProxyId) {
         self.mark(id);
+    }
+
+    fn marked(&self) -> Option<&[ProxyId]> {
+        Some(&self.moved)
     }
 
     fn update(&mut self, table: &ProxyTable) {

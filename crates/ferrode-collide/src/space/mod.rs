@@ -35,7 +35,7 @@ pub trait BroadPhase {
     fn insert(&mut self, table: &mut ProxyTable, id: ProxyId);
     /// Removes a proxy.
     fn remove(&mut self, table: &mut ProxyTable, id: ProxyId);
-    /// Notes that a proxy's box is about to change; it goes to the head of the list.
+    /// Notes that a proxy's box is about to change; it goes to the head of the list, where the order of ODE asks for it.
     fn moved(&mut self, table: &mut ProxyTable, id: ProxyId);
     /// Brings the structure up to date with the boxes in the table.
     fn update(&mut self, table: &ProxyTable);
@@ -79,6 +79,11 @@ pub trait BroadPhase {
     }
     /// The members, newest or last moved first.
     fn members(&self) -> &Members;
+    /// What was marked since the last update, in no order; may name some twice, and some that left. `None`: the front of
+    /// the list of members.
+    fn marked(&self) -> Option<&[ProxyId]> {
+        None
+    }
     /// The members in the order in which ODE counts them, where that is not the order of the list.
     fn arrays(&self) -> Option<[&[ProxyId]; 2]> {
         None
