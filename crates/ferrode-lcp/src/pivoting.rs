@@ -20,6 +20,7 @@
 //! `r' = r + (S' - S) lambda` from `lambda = 0`, which leave redundant rows at the forces of least norm. (R. T. Rockafellar, "Monotone
 //! operators and the proximal point algorithm", 1976.)
 
+mod canonical;
 mod fallback;
 mod interior;
 pub(crate) mod line;
@@ -120,8 +121,6 @@ const CERTIFIED: f64 = 1e-10;
 const WRONG: f64 = 1e-14;
 /// Rounding of a slack, in parts of its right-hand side.
 const NOISE: f64 = 4e-15;
-/// A row counts as degenerate when it is this close to changing its state.
-const DEGENERATE: f64 = 1e-9;
 /// So many times the number of wrong rows may fail to fall.
 const CHANCES: u32 = 3;
 const MOST_PROXIMAL_STEPS: u32 = 6;
@@ -138,6 +137,8 @@ pub struct PivotingWorkspace {
     factored: Vec<RowState>,
     proposed: Vec<RowState>,
     accepted: Vec<RowState>,
+    /// Degenerate rows that have to be free.
+    needed: Vec<bool>,
     /// The point with the smallest F so far, and `J` times the way from there.
     best_y: Vec<Six>,
     best_jy: Vec<f64>,
@@ -274,7 +275,8 @@ impl Solve<'_, '_> {
                 let force = work.system.lambda[f];
                 let empty = force == 0.0 || work.system.used_sigma[row] <= 0.0;
                 work.hi[row] = if empty { 0.0 } else { (p.hi[row] * force).abs() };
-                work.lo[row] = -work.hi[row];
+                // Not -0.
+                work.lo[row] = 0.0 - work.hi[row];
             }
         }
     }
@@ -459,35 +461,6 @@ impl Solve<'_, '_> {
             }
         }
         wrong
-    }
-
-    /// Puts degenerate rows at their bound and solves once more, so that the way to the answer leaves no trace.
-    fn canonical(&mut self, largest: f64) -> bool {
-        let PivotingWorkspace { system, state, proposed, lo, hi, .. } = &mut *self.work;
-        let close = DEGENERATE * (1.0 + largest);
-        let mut degenerate = false;
-        for row in 0..state.len() {
-            if state[row] == RowState::Free {
-                if system.lambda[row] - lo[row] < close {
-                    (proposed[row], degenerate) = (RowState::Lower, true);
-                } else if hi[row] - system.lambda[row] < close {
-                    (proposed[row], degenerate) = (RowState::Upper, true);
-                }
-            }
-        }
-        if degenerate {
-            self.work.accepted.clone_from(&self.work.state);
-            core::mem::swap(&mut self.work.state, &mut self.work.proposed);
-            let largest = self.solve_set();
-            if !largest.is_finite() || self.propose(largest) > 0 {
-                // They are needed after all.
-                self.work.state.clone_from(&self.work.accepted);
-                self.solve_set();
-            }
-        }
-        let Self { p, shape, work, .. } = self;
-        work.system.polish(p.blocks, p.jacobian, &work.state, shape, largest);
-        true
     }
 
     /// Repeats the solve with the right-hand side that makes good the CFM that rows were given beyond their own.

@@ -1,0 +1,71 @@
+//! One answer from all ways there: which state a row gets that could have either.
+//!
+//! A degenerate row is at its bound with no slack: free or not, the forces are the same, but not to the last bit. Such rows are put at
+//! their bound. Where several share a load, not all can be; those that must be free are let go again.
+
+use super::{RowState, Solve};
+use crate::pivoting::PivotingWorkspace;
+
+/// A row counts as degenerate when it is this close to changing its state.
+const DEGENERATE: f64 = 1e-9;
+/// So often degenerate rows are looked for.
+const MOST_ROUNDS: u32 = 6;
+
+impl Solve<'_, '_> {
+    /// Puts degenerate rows at their bound and solves once more, so that the way to the answer leaves no trace.
+    pub(super) fn canonical(&mut self, largest: f64) -> bool {
+        self.work.accepted.clone_from(&self.work.state);
+        self.work.needed.clear();
+        self.work.needed.resize(self.work.state.len(), false);
+        let largest = self.put_at_bounds(largest).unwrap_or_else(|| {
+            // They would not go there.
+            self.work.state.clone_from(&self.work.accepted);
+            self.solve_set()
+        });
+        let Self { p, shape, work, .. } = self;
+        work.system.polish(p.blocks, p.jacobian, &work.state, shape, largest);
+        true
+    }
+
+    /// Puts rows at bounds until no free row is left there but those that must be free. Returns the largest force.
+    fn put_at_bounds(&mut self, mut largest: f64) -> Option<f64> {
+        for _ in 0..MOST_ROUNDS {
+            let PivotingWorkspace { system, state, needed, lo, hi, .. } = &mut *self.work;
+            let close = DEGENERATE * (1.0 + largest);
+            let mut degenerate = false;
+            for row in 0..state.len() {
+                if state[row] != RowState::Free || needed[row] {
+                    continue;
+                }
+                if system.lambda[row] - lo[row] < close {
+                    (state[row], degenerate) = (RowState::Lower, true);
+                } else if hi[row] - system.lambda[row] < close {
+                    (state[row], degenerate) = (RowState::Upper, true);
+                }
+            }
+            if !degenerate {
+                return Some(largest);
+            }
+            let mut wrong = usize::MAX;
+            for _ in 0..MOST_ROUNDS {
+                largest = self.solve_set();
+                if !largest.is_finite() {
+                    return None;
+                }
+                wrong = self.propose(largest);
+                if wrong == 0 {
+                    break;
+                }
+                let PivotingWorkspace { state, proposed, needed, .. } = &mut *self.work;
+                for row in 0..state.len() {
+                    needed[row] |= proposed[row] == RowState::Free && state[row] != RowState::Free;
+                }
+                core::mem::swap(state, proposed);
+            }
+            if wrong > 0 {
+                return None;
+            }
+        }
+        None
+    }
+}
