@@ -21,8 +21,12 @@ export! {
     /// Objects live on: programs destroy them afterwards, from static destructors for one.
     fn dCloseODE() {
         let close = |starts: usize| starts.checked_sub(1);
-        if STARTS.fetch_update(Ordering::AcqRel, Ordering::Acquire, close).is_err() {
-            return Err(Fault::user("dCloseODE must not be called without dInitODE2 or if dInitODE2 fails"));
+        match STARTS.fetch_update(Ordering::AcqRel, Ordering::Acquire, close) {
+            Err(_) => {
+                return Err(Fault::user("dCloseODE must not be called without dInitODE2 or if dInitODE2 fails"));
+            }
+            Ok(1) => crate::geom::forget_classes(),
+            Ok(_) => {}
         }
     }
     /// No data is kept by thread: there is nothing to allocate, and it always works once the library was started.

@@ -6,8 +6,14 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Programs whose numbers agree to this, relative to numbers above 1.
+/// Numbers agree to this, relative to numbers above 1, unless a program's first comment says "tolerance: x" and why.
 const TOLERANCE: f64 = 1e-9;
+
+fn tolerance(source: &Path) -> f64 {
+    let text = std::fs::read_to_string(source).expect("the program's text");
+    let stated = text.split_once("tolerance: ").and_then(|(_, rest)| rest.split_whitespace().next());
+    stated.map_or(TOLERANCE, |number| number.parse().expect("a number after \"tolerance: \""))
+}
 
 /// The folder of this package.
 fn here() -> &'static Path {
@@ -63,15 +69,15 @@ fn run(program: &Path, folder: Option<&Path>) -> String {
 }
 
 /// Whether two words are the same, or numbers that agree.
-fn agree(a: &str, b: &str) -> bool {
+fn agree(a: &str, b: &str, tolerance: f64) -> bool {
     a == b
         || match (a.parse::<f64>(), b.parse::<f64>()) {
-            (Ok(a), Ok(b)) => (a - b).abs() <= TOLERANCE * a.abs().max(1.0),
+            (Ok(a), Ok(b)) => (a - b).abs() <= tolerance * a.abs().max(1.0),
             _ => false,
         }
 }
 
-fn compare(name: &str, theirs: &str, ours: &str) -> Vec<String> {
+fn compare(name: &str, theirs: &str, ours: &str, tolerance: f64) -> Vec<String> {
     let mut faults = Vec::new();
     let (mut a, mut b) = (theirs.lines(), ours.lines());
     for number in 1.. {
@@ -81,7 +87,7 @@ fn compare(name: &str, theirs: &str, ours: &str) -> Vec<String> {
         }
         let (a, b) = (a.unwrap_or("(end)"), b.unwrap_or("(end)"));
         let same = a.split_whitespace().count() == b.split_whitespace().count()
-            && a.split_whitespace().zip(b.split_whitespace()).all(|(a, b)| agree(a, b));
+            && a.split_whitespace().zip(b.split_whitespace()).all(|(a, b)| agree(a, b, tolerance));
         if !same {
             faults.push(format!("{name}, line {number}:\n  libode: {a}\n  ours:   {b}"));
         }
@@ -107,7 +113,12 @@ fn programs_print_the_same() {
             return;
         };
         let name = source.file_stem().expect("a name").to_string_lossy().into_owned();
-        faults.extend(compare(&name, &run(&program, None), &run(&program, Some(&folder))));
+        faults.extend(compare(
+            &name,
+            &run(&program, None),
+            &run(&program, Some(&folder)),
+            tolerance(&source),
+        ));
     }
     assert!(faults.is_empty(), "{} lines differ:\n{}", faults.len(), faults.join("\n"));
 }
@@ -135,4 +146,33 @@ fn only_public_names_are_exported() {
     println!("exported {exported} of {}", wanted.len());
     let floor: usize = include_str!("data/exported.txt").trim().parse().expect("a number");
     assert!(exported >= floor, "{exported} names are exported; there were {floor} before");
+}
+
+/// Whether a text has a name as a whole word.
+fn has_word(text: &str, name: &str) -> bool {
+    let part = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    text.match_indices(name).any(|(at, _)| {
+        let (before, after) = (at.checked_sub(1), at + name.len());
+        !before.is_some_and(|i| part(text.as_bytes()[i]))
+            && !text.as_bytes().get(after).is_some_and(|b| part(*b))
+    })
+}
+
+/// How many of the public functions the programs call; `worlds.c` spells getters and setters by macro.
+#[test]
+fn programs_call_nearly_every_function() {
+    let mut text = std::fs::read_to_string(here().join("tests/c/check.h")).expect("the header");
+    for program in programs() {
+        text += &std::fs::read_to_string(program).expect("a program");
+    }
+    let pair = |name: &str| {
+        let part = name.strip_prefix("dWorldGet").or(name.strip_prefix("dWorldSet"));
+        part.is_some_and(|part| {
+            text.contains(&format!("REAL({part},")) || text.contains(&format!("INT({part},"))
+        })
+    };
+    let names = include_str!("data/symbols.txt").lines();
+    let missing: Vec<&str> = names.filter(|name| !has_word(&text, name) && !pair(name)).collect();
+    println!("called {} of 642; not called: {missing:?}", 642 - missing.len());
+    assert!(missing.len() <= 1, "functions that no program calls: {missing:?}");
 }

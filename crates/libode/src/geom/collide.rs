@@ -1,7 +1,8 @@
 //! Contacts of geoms and pairs of spaces, as the program asks for them; boxes and segments by themselves.
 
+use super::classes::{Collider, collider};
 use super::space::{Pairs, pairs_between, pairs_within};
-use super::{GeomId, GeomRecord};
+use super::{GeomId, GeomRecord, class};
 use crate::contact::ContactGeomRecord;
 use crate::fault::{Fault, Outcome, export, fence};
 use crate::real::{InMatrix, InVector, Out, OutVector, Real, mat3, padded, r, vector, vector3};
@@ -9,7 +10,8 @@ use crate::record::Required;
 use core::cell::RefCell;
 use core::ffi::{c_int, c_uint, c_void};
 use ferrode_collide::narrow::{closest_segment_points, collide_frames, cuboid_cuboid, cuboids_touch};
-use ferrode_collide::{CollideOptions, Contacts, Cuboid, Frame, GeomContact};
+use ferrode_collide::{CollideOptions, Contacts, Cuboid, Frame, GeomContact, Shape};
+use ferrode_math::Vec3;
 
 /// `dNearCallback`.
 type NearCallback = unsafe extern "C-unwind" fn(*mut c_void, GeomId, GeomId);
@@ -61,19 +63,137 @@ fn contacts_of(
     if core::ptr::eq(a, b) || same_body || left == 0 {
         return from;
     }
-    let options = CollideOptions { max_contacts: left as u16, ..options };
-    let (fa, fb) = (a.frame(), b.frame());
-    FOUND.with_borrow_mut(|found| {
-        found.clear();
-        if let (Some(sa), Some(sb)) = (&*a.shape.borrow(), &*b.shape.borrow()) {
-            collide_frames((sa, &fa), (sb, &fb), options, found);
+    if let Some((collider, swapped)) = collider(a.class.get(), b.class.get()) {
+        return from + by_program(a, b, (flags & !0xffff) | left as c_uint, target, from, collider, swapped);
+    }
+    let (Some((sa, fa)), Some((sb, fb))) = (a.solid(), b.solid()) else { return from };
+    let filter = Filter::of(sa, sb);
+    // A filter needs all contacts to choose from.
+    let max_contacts = if filter.is_some() { u16::MAX } else { left as u16 };
+    let options = CollideOptions { max_contacts, ..options };
+    let mut found = FOUND.take();
+    found.clear();
+    if let (Some(sa), Some(sb)) = (&*sa.shape.borrow(), &*sb.shape.borrow()) {
+        collide_frames((sa, &fa), (sb, &fb), options, &mut found);
+    }
+    if let Some(filter) = filter {
+        filter.apply(&mut found);
+    }
+    let name = |geom: &'static GeomRecord, solid: &GeomRecord| {
+        let inner =
+            geom.inner().filter(|_| !geom.names_itself()).filter(|inner| core::ptr::eq(*inner, solid));
+        GeomId::of(inner.unwrap_or(geom))
+    };
+    let (ga, gb) = (name(a, sa), name(b, sb));
+    for (i, contact) in found.iter().take(left).enumerate() {
+        write(target, from + i, contact, ga, gb);
+    }
+    let count = found.len().min(left);
+    FOUND.set(found);
+    from + count
+}
+
+/// Contacts by a collider of the program's. Given the geoms in the other order, its contacts are turned round.
+fn by_program(
+    a: &'static GeomRecord,
+    b: &'static GeomRecord,
+    flags: c_uint,
+    target: Target,
+    from: usize,
+    collider: Collider,
+    swapped: bool,
+) -> usize {
+    let (ga, gb) = (GeomId::of(a), GeomId::of(b));
+    let (first, second) = if swapped { (gb, ga) } else { (ga, gb) };
+    // SAFETY: the program's own function, called as its header says, with room for as many contacts as asked for.
+    let count =
+        unsafe { collider(first, second, flags.cast_signed(), target.at(from), target.skip as c_int) };
+    let count = usize::try_from(count).unwrap_or(0).min((flags & 0xffff) as usize);
+    if swapped {
+        for i in from..from + count {
+            // SAFETY: the collider has written so many contacts into the program's array.
+            unsafe {
+                let mut record = target.at(i).read_unaligned();
+                record.normal = record.normal.map(|x| -x);
+                core::mem::swap(&mut record.geom1, &mut record.geom2);
+                core::mem::swap(&mut record.side1, &mut record.side2);
+                target.at(i).write_unaligned(record);
+            }
         }
-        let (ga, gb) = (GeomId::of(a), GeomId::of(b));
-        for (i, contact) in found.iter().take(left).enumerate() {
-            write(target, from + i, contact, ga, gb);
+    }
+    count
+}
+
+/// The callbacks of a mesh that is asked about its triangles: one that meets a ball, box, capsule, cylinder or ray.
+struct Filter {
+    mesh: &'static GeomRecord,
+    other: &'static GeomRecord,
+    first: bool,
+}
+
+impl Filter {
+    fn of(a: &GeomRecord, b: &GeomRecord) -> Option<Self> {
+        let asks = |mesh: &GeomRecord, other: &GeomRecord| {
+            let has = mesh.mesh.tri.get().is_some()
+                || mesh.mesh.array.get().is_some()
+                || mesh.mesh.ray.get().is_some();
+            let kind = other.class.get();
+            let asked =
+                matches!(kind, class::SPHERE | class::BOX | class::CAPSULE | class::CYLINDER | class::RAY);
+            mesh.class.get() == class::TRIMESH && has && asked
+        };
+        let live = |geom: &GeomRecord| GeomId::from_address(core::ptr::from_ref(geom).addr()).live();
+        if asks(a, b) {
+            Some(Self { mesh: live(a)?, other: live(b)?, first: true })
+        } else if asks(b, a) {
+            Some(Self { mesh: live(b)?, other: live(a)?, first: false })
+        } else {
+            None
         }
-        from + found.len().min(left)
-    })
+    }
+
+    /// Keeps the contacts that the callbacks let stand.
+    fn apply(&self, found: &mut Vec<GeomContact>) {
+        let (mesh, other) = (GeomId::of(self.mesh), GeomId::of(self.other));
+        let side = |contact: &GeomContact| if self.first { contact.side1 } else { contact.side2 };
+        if let Some(array) = self.mesh.mesh.array.get() {
+            let mut triangles: Vec<c_int> = found.iter().map(side).collect();
+            triangles.dedup();
+            if !triangles.is_empty() {
+                // SAFETY: the program's own function, called as its header says.
+                unsafe { array(mesh, other, triangles.as_ptr(), triangles.len() as c_int) };
+            }
+        }
+        let is_ray = self.other.class.get() == class::RAY;
+        found.retain(|contact| {
+            let triangle = side(contact);
+            if is_ray && let Some(ray) = self.mesh.mesh.ray.get() {
+                let (u, v) = self.barycentrics(triangle, contact.point.position);
+                // SAFETY: as above.
+                if unsafe { ray(mesh, other, triangle, r(u), r(v)) } == 0 {
+                    return false;
+                }
+            }
+            // SAFETY: as above.
+            self.mesh.mesh.tri.get().is_none_or(|tri| unsafe { tri(mesh, other, triangle) } != 0)
+        });
+    }
+
+    /// Where in a triangle a point is: (1 - u - v) v0 + u v1 + v v2.
+    fn barycentrics(&self, triangle: c_int, point: Vec3) -> (f64, f64) {
+        let local = self.mesh.frame().point_to_local(point);
+        match &*self.mesh.shape.borrow() {
+            Some(Shape::TriMesh(mesh)) if (0..mesh.triangles().len() as c_int).contains(&triangle) => {
+                let [a, b, c] = mesh.corners(triangle.cast_unsigned());
+                let (e, f, p) = (b - a, c - a, local - a);
+                let (ee, ef, ff) = (e.dot(e), e.dot(f), f.dot(f));
+                let (pe, pf) = (p.dot(e), p.dot(f));
+                let k = 1.0 / (ee * ff - ef * ef);
+                ((ff * pe - ef * pf) * k, (ee * pf - ef * pe) * k)
+            }
+            _ => (0.0, 0.0),
+        }
+    }
 }
 
 fn collide(
@@ -169,14 +289,16 @@ pub unsafe extern "C-unwind" fn dSpaceCollide2(
     });
 }
 
-/// A box at a place, from C's arrays.
-fn box_at(position: InVector, rotation: InMatrix, sides: InVector) -> Outcome<(Cuboid, Frame)> {
-    let cuboid = Cuboid::new(vector(&sides.get()?)).map_err(|_| Fault::ARGUMENT)?;
-    Ok((cuboid, Frame::new(vector(&position.get()?), mat3(&rotation.get()?))))
-}
-
-export! {
-    fn dCollide(o1: GeomId, o2: GeomId, flags: c_int, contact: *mut ContactGeomRecord, skip: c_int) -> c_int {
+/// Finds the contacts of two geoms, or of the members of spaces.
+#[unsafe(no_mangle)]
+pub unsafe extern "C-unwind" fn dCollide(
+    o1: GeomId,
+    o2: GeomId,
+    flags: c_int,
+    contact: *mut ContactGeomRecord,
+    skip: c_int,
+) -> c_int {
+    fence("dCollide", || {
         let (a, b) = (o1.get()?, o2.get()?);
         let flags = flags.cast_unsigned();
         if flags & 0xffff == 0 {
@@ -190,9 +312,17 @@ export! {
         if !crate::init::is_started() {
             return Err(Fault::user("dInitODE2 must be called first"));
         }
-        collide(a, b, flags, Target { first: contact, skip }, 0)? as c_int
-    }
+        Ok(collide(a, b, flags, Target { first: contact, skip }, 0)? as c_int)
+    })
+}
 
+/// A box at a place, from C's arrays.
+fn box_at(position: InVector, rotation: InMatrix, sides: InVector) -> Outcome<(Cuboid, Frame)> {
+    let cuboid = Cuboid::new(vector(&sides.get()?)).map_err(|_| Fault::ARGUMENT)?;
+    Ok((cuboid, Frame::new(vector(&position.get()?), mat3(&rotation.get()?))))
+}
+
+export! {
     #[allow(clippy::too_many_arguments)]
     fn dBoxBox(
         p1: InVector, r1: InMatrix, side1: InVector, p2: InVector, r2: InMatrix, side2: InVector, normal: OutVector,

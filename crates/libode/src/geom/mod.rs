@@ -3,10 +3,13 @@
 //! A space is a geom, and both are one kind of record. A geom without a body, or with an offset, has its pose in the
 //! record; else its pose is the body's, and getters point into the body's record.
 
+mod classes;
 mod collide;
+mod heightfield;
 mod pose;
 mod shapes;
 mod space;
+mod trimesh;
 
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{Real, Real4, Real12, mat3, r, vector};
@@ -17,6 +20,7 @@ use core::ffi::{c_int, c_ulong, c_void};
 use ferrode_collide::{Frame, Shape};
 use ferrode_math::{Aabb, Mat3, Vec3};
 
+pub use classes::forget as forget_classes;
 pub use space::SpaceData;
 
 pub type GeomId = Handle<GeomRecord>;
@@ -34,6 +38,9 @@ pub mod class {
     pub const PLANE: c_int = 4;
     pub const RAY: c_int = 5;
     pub const CONVEX: c_int = 6;
+    pub const TRANSFORM: c_int = 7;
+    pub const TRIMESH: c_int = 8;
+    pub const HEIGHTFIELD: c_int = 9;
     pub const SIMPLE_SPACE: c_int = 10;
     pub const HASH_SPACE: c_int = 11;
     pub const SWEEP_AND_PRUNE_SPACE: c_int = 12;
@@ -67,6 +74,9 @@ pub struct GeomRecord {
     contents: RefCell<Option<Box<SpaceData>>>,
     /// Collisions that report this space's members now.
     locks: Cell<u32>,
+    mesh: trimesh::MeshGeom,
+    field: heightfield::FieldGeom,
+    own: classes::ClassGeom,
 }
 record!(GeomRecord, GEOMS, 13);
 
@@ -111,7 +121,11 @@ impl GeomRecord {
     }
 
     fn is_placeable(&self) -> bool {
-        !self.is_space() && self.class.get() != class::PLANE
+        match self.class.get() {
+            class::PLANE => false,
+            class::HEIGHTFIELD => self.field.placeable.get(),
+            _ => !self.is_space(),
+        }
     }
 
     fn require_placeable(&self) -> Outcome<()> {
@@ -159,16 +173,43 @@ impl GeomRecord {
     /// The world box, brought up to date.
     fn current_aabb(&self) -> Aabb {
         if self.stale.get() || self.aabb.get().is_none() {
-            let aabb = match &*self.contents.borrow() {
-                Some(contents) => contents.aabb(self.class.get()),
-                None => {
-                    self.shape.borrow().as_ref().map_or(Aabb::EMPTY, |shape| shape.aabb_in(&self.frame()))
-                }
-            };
+            let aabb = self.measure();
             self.aabb.set(Some(aabb));
             self.stale.set(false);
         }
         self.aabb.get().unwrap_or(Aabb::EMPTY)
+    }
+
+    /// The world box, afresh. The program's own function may be asked, so nothing is borrowed meanwhile.
+    fn measure(&self) -> Aabb {
+        if self.is_space() {
+            let members = self.contents.borrow().as_ref().map(|contents| contents.list()).unwrap_or_default();
+            return space::aabb_of(self.class.get(), &members);
+        }
+        if let Some([ax, bx, ay, by, az, bz]) = self.user_aabb() {
+            let v = crate::real::vec3;
+            return Aabb::new(v(ax, ay, az), v(bx, by, bz));
+        }
+        match self.solid() {
+            Some((geom, frame)) => {
+                geom.shape.borrow().as_ref().map_or(Aabb::EMPTY, |shape| shape.aabb_in(&frame))
+            }
+            None => Aabb::new(Vec3::ZERO, Vec3::ZERO),
+        }
+    }
+
+    /// The geom whose shape counts, and where it is: another one for a wrapper, none for an empty wrapper.
+    fn solid(&self) -> Option<(&Self, Frame)> {
+        self.refresh_mesh();
+        self.refresh_field();
+        if self.class.get() != class::TRANSFORM {
+            return Some((self, self.frame()));
+        }
+        let (outer, inner) = (self.frame(), self.inner()?);
+        inner.refresh_mesh();
+        inner.refresh_field();
+        let own = inner.frame();
+        Some((inner, Frame::new(outer.point_to_world(own.position), outer.rotation * own.rotation)))
     }
 
     /// Notes that pose or shape have changed: the space it is in puts it first, and spaces above learn of it.
@@ -242,6 +283,7 @@ impl GeomRecord {
         if self.is_space() {
             space::empty(self)?;
         }
+        self.end_class()?;
         self.leave_body();
         if let Some(parent) = self.parent() {
             space::remove(parent, self)?;

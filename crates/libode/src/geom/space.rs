@@ -72,15 +72,6 @@ impl SpaceData {
         }
     }
 
-    /// The box around all members; none, for a space that is as large as the world.
-    pub fn aabb(&self, class: c_int) -> Aabb {
-        if matches!(class, class::SWEEP_AND_PRUNE_SPACE | class::QUADTREE_SPACE) {
-            return Aabb::EVERYTHING;
-        }
-        let boxes = self.list().into_iter().filter_map(GeomId::live).map(GeomRecord::current_aabb);
-        boxes.reduce(|a, b| a.union(&b)).unwrap_or(Aabb::new(Vec3::ZERO, Vec3::ZERO))
-    }
-
     /// A member's box is about to change.
     pub fn moved(&mut self, proxy: u32) {
         let (broad, table, _) = self.parts();
@@ -98,6 +89,15 @@ impl SpaceData {
             broad.switched(id);
         }
     }
+}
+
+/// The box around a space's members; all of the world for a space that is as large.
+pub fn aabb_of(class: c_int, members: &[GeomId]) -> Aabb {
+    if matches!(class, class::SWEEP_AND_PRUNE_SPACE | class::QUADTREE_SPACE) {
+        return Aabb::EVERYTHING;
+    }
+    let boxes = members.iter().filter_map(|member| member.live()).map(GeomRecord::current_aabb);
+    boxes.reduce(|a, b| a.union(&b)).unwrap_or(Aabb::new(Vec3::ZERO, Vec3::ZERO))
 }
 
 fn describe(proxy: &mut Proxy, geom: &GeomRecord) {

@@ -1,0 +1,460 @@
+//! Triangle meshes: data that geoms share, and the geoms' own callbacks.
+//!
+//! The arrays stay the program's: they are read when the data are built, and again when the program says that it has
+//! changed them.
+
+use super::{GeomId, GeomRecord, class};
+use crate::fault::{Fault, Outcome, export};
+use crate::mass::{MassPointer, store_checked};
+use crate::real::{In, Out, OutVector, Real, f, vector3};
+use crate::record::{Required, record};
+use crate::slab::{Handle, Pool, Record, Tag};
+use core::cell::{Cell, RefCell};
+use core::ffi::{c_int, c_uint, c_void};
+use ferrode_collide::{Frame, Shape, TriMesh};
+use ferrode_dynamics::Mass;
+use ferrode_math::Vec3;
+
+pub type MeshId = Handle<MeshRecord>;
+
+pub type TriCallback = unsafe extern "C-unwind" fn(GeomId, GeomId, c_int) -> c_int;
+pub type ArrayCallback = unsafe extern "C-unwind" fn(GeomId, GeomId, *const c_int, c_int);
+pub type RayCallback = unsafe extern "C-unwind" fn(GeomId, GeomId, c_int, Real, Real) -> c_int;
+pub type MergeCallback = unsafe extern "C-unwind" fn(GeomId, c_int, c_int) -> c_int;
+
+/// The program's arrays.
+#[derive(Clone, Copy)]
+struct Arrays {
+    vertices: *const u8,
+    single: bool,
+    vertex_stride: usize,
+    vertex_count: usize,
+    indices: *const u8,
+    triangle_count: usize,
+    triangle_stride: usize,
+}
+
+/// A mesh's data.
+#[derive(Default)]
+pub struct MeshRecord {
+    tag: Tag,
+    arrays: Cell<Option<Arrays>>,
+    mesh: RefCell<Option<TriMesh>>,
+    /// Counts builds, so that geoms see that theirs is an old one.
+    version: Cell<u64>,
+    normals: Cell<*mut c_void>,
+    /// A byte a triangle: edges and vertices to use.
+    flags: RefCell<Vec<u8>>,
+    given_flags: Cell<*mut c_void>,
+    preprocessed: Cell<c_uint>,
+}
+record!(MeshRecord, MESHES, 14);
+
+/// What only a mesh's geom has.
+#[derive(Default)]
+pub struct MeshGeom {
+    pub data: Cell<MeshId>,
+    version: Cell<u64>,
+    pub tri: Cell<Option<TriCallback>>,
+    pub array: Cell<Option<ArrayCallback>>,
+    pub ray: Cell<Option<RayCallback>>,
+    merge: Cell<Option<MergeCallback>>,
+    /// For spheres, boxes and capsules.
+    coherence: Cell<[bool; 3]>,
+    last_transform: Cell<[Real; 16]>,
+    merge_mode: Cell<c_int>,
+}
+
+impl MeshRecord {
+    /// Reads the arrays and builds the mesh.
+    fn build(&self) -> Outcome<()> {
+        let arrays = self.arrays.get().ok_or(Fault::ARGUMENT)?;
+        let mut vertices = Vec::with_capacity(arrays.vertex_count);
+        for i in 0..arrays.vertex_count {
+            let at = arrays.vertices.wrapping_add(i * arrays.vertex_stride);
+            // SAFETY: the program keeps its arrays, as long and strided as it said, until the data are destroyed (the
+            // contract of the build functions).
+            let v = unsafe {
+                if arrays.single {
+                    at.cast::<[f32; 3]>().read_unaligned().map(f64::from)
+                } else {
+                    at.cast::<[f64; 3]>().read_unaligned()
+                }
+            };
+            vertices.push(Vec3::from_array(v));
+        }
+        let triangles = (0..arrays.triangle_count).map(|i| {
+            let at = arrays.indices.wrapping_add(i * arrays.triangle_stride);
+            // SAFETY: as above.
+            unsafe { at.cast::<[u32; 3]>().read_unaligned() }
+        });
+        let mesh = TriMesh::new(vertices, triangles.collect()).map_err(|_| Fault::ARGUMENT)?;
+        *self.mesh.borrow_mut() = Some(mesh);
+        self.version.set(self.version.get() + 1);
+        Ok(())
+    }
+
+    fn start(&self, arrays: Arrays, normals: *const c_void) -> Outcome<()> {
+        if arrays.vertices.is_null() || arrays.indices.is_null() {
+            return Err(Fault::ARGUMENT);
+        }
+        self.arrays.set(Some(arrays));
+        self.normals.set(normals.cast_mut());
+        self.flags.borrow_mut().clear();
+        self.given_flags.set(core::ptr::null_mut());
+        self.preprocessed.set(0);
+        self.build()
+    }
+
+    fn triangle_count(&self) -> usize {
+        self.mesh.borrow().as_ref().map_or(0, |mesh| mesh.triangles().len())
+    }
+
+    /// Where the flags are: the program's own, or those of preprocessing.
+    fn flags_pointer(&self) -> *mut c_void {
+        if !self.given_flags.get().is_null() {
+            return self.given_flags.get();
+        }
+        let mut flags = self.flags.borrow_mut();
+        if flags.is_empty() { core::ptr::null_mut() } else { flags.as_mut_ptr().cast() }
+    }
+}
+
+/// Which edges (1, 2, 4) and vertices (8, 16, 32) of each triangle to use: convex and boundary edges and vertices
+/// without concave edges, each in one triangle.
+fn use_flags(mesh: &TriMesh) -> Vec<u8> {
+    let triangles = mesh.triangles();
+    let mut edges = std::collections::BTreeMap::<(u32, u32), Vec<(usize, usize)>>::new();
+    for (t, triangle) in triangles.iter().enumerate() {
+        for e in 0..3 {
+            let (a, b) = (triangle[e], triangle[(e + 1) % 3]);
+            edges.entry((a.min(b), a.max(b))).or_default().push((t, e));
+        }
+    }
+    let mut flags = vec![0; triangles.len()];
+    let mut concave = vec![false; mesh.vertices().len()];
+    for (ends, sides) in &edges {
+        let bends_in = matches!(sides[..], [first, second] if is_concave(mesh, first, second));
+        if bends_in {
+            concave[ends.0 as usize] = true;
+            concave[ends.1 as usize] = true;
+        } else {
+            flags[sides[0].0] |= 1 << sides[0].1;
+        }
+    }
+    for (t, triangle) in triangles.iter().enumerate() {
+        for (i, vertex) in triangle.iter().enumerate() {
+            if !core::mem::replace(&mut concave[*vertex as usize], true) {
+                flags[t] |= 8 << i;
+            }
+        }
+    }
+    flags
+}
+
+/// Whether the second triangle rises above the first beyond their common edge.
+fn is_concave(mesh: &TriMesh, (t1, e1): (usize, usize), (t2, e2): (usize, usize)) -> bool {
+    let at = |t: usize, i: usize| mesh.vertices()[mesh.triangles()[t][i % 3] as usize];
+    let normal = (at(t1, 1) - at(t1, 0)).cross(at(t1, 2) - at(t1, 0));
+    let (start, end, apex) = (at(t1, e1), at(t1, e1 + 1), at(t2, e2 + 2));
+    let along = end - start;
+    let h = (apex - start) - along * ((apex - start).dot(along) / along.length_squared());
+    let rise = normal.dot(h);
+    rise > 0.0 && rise * rise >= 1e-12 * normal.length_squared() * h.length_squared()
+}
+
+impl GeomRecord {
+    /// Takes over the mesh's latest build.
+    pub fn refresh_mesh(&self) {
+        if self.class.get() != class::TRIMESH {
+            return;
+        }
+        let Some(data) = self.mesh.data.get().live() else { return };
+        if self.mesh.version.replace(data.version.get()) != data.version.get() {
+            *self.shape.borrow_mut() = data.mesh.borrow().clone().map(Shape::from);
+        }
+    }
+
+    fn trimesh(&self) -> Outcome<TriMesh> {
+        self.refresh_mesh();
+        match &*self.shape.borrow() {
+            Some(Shape::TriMesh(mesh)) => Ok(mesh.clone()),
+            _ => Err(Fault::ARGUMENT),
+        }
+    }
+}
+
+fn mesh_geom(geom: GeomId) -> Outcome<&'static GeomRecord> {
+    let geom = geom.get()?;
+    geom.require_class(class::TRIMESH, "argument not a trimesh")?;
+    Ok(geom)
+}
+
+/// A triangle's corners in the world.
+fn corners(geom: GeomId, index: c_int) -> Outcome<[Vec3; 3]> {
+    let geom = mesh_geom(geom)?;
+    let mesh = geom.trimesh()?;
+    let index = usize::try_from(index).ok().filter(|i| *i < mesh.triangles().len()).ok_or(Fault::ARGUMENT)?;
+    let frame = geom.frame();
+    Ok(mesh.corners(index as u32).map(|p| frame.point_to_world(p)))
+}
+
+fn arrays(
+    vertices: *const c_void,
+    single: bool,
+    vertex_stride: c_int,
+    vertex_count: c_int,
+    indices: *const c_void,
+    index_count: c_int,
+    triangle_stride: c_int,
+) -> Outcome<Arrays> {
+    let size = |n: c_int| usize::try_from(n).map_err(|_| Fault::ARGUMENT);
+    Ok(Arrays {
+        vertices: vertices.cast(),
+        single,
+        vertex_stride: size(vertex_stride)?,
+        vertex_count: size(vertex_count)?,
+        indices: indices.cast(),
+        triangle_count: size(index_count)? / 3,
+        triangle_stride: size(triangle_stride)?,
+    })
+}
+
+fn simple(
+    vertices: *const Real,
+    count: c_int,
+    indices: *const c_uint,
+    index_count: c_int,
+) -> Outcome<Arrays> {
+    let (stride, single) = ((4 * size_of::<Real>()) as c_int, size_of::<Real>() == 4);
+    arrays(vertices.cast(), single, stride, count, indices.cast(), index_count, 12)
+}
+
+fn preprocess(data: MeshId, requests: c_uint) -> Outcome<c_int> {
+    let data = data.get()?;
+    if data.preprocessed.get() & requests != 0 {
+        return Err(Fault::user("Repeated preprocessing has been requested"));
+    }
+    data.preprocessed.set(data.preprocessed.get() | requests);
+    if requests & 1 != 0 {
+        let flags = data.mesh.borrow().as_ref().map(use_flags).unwrap_or_default();
+        *data.flags.borrow_mut() = flags;
+    }
+    Ok(1)
+}
+
+/// The mesh of a geom in the world, for its mass.
+fn world_mesh(geom: GeomId) -> Outcome<(Vec<Vec3>, Vec<[u32; 3]>)> {
+    let geom = mesh_geom(geom)?;
+    let mesh = geom.trimesh()?;
+    let frame: Frame = geom.frame();
+    let vertices = mesh.vertices().iter().map(|p| frame.point_to_world(*p)).collect();
+    Ok((vertices, mesh.triangles().to_vec()))
+}
+
+/// Whether a class may have its contacts remembered: sphere, box, capsule.
+fn coherent_class(geom_class: c_int) -> Option<usize> {
+    usize::try_from(geom_class).ok().filter(|class| *class < 3)
+}
+
+export! {
+    fn dGeomTriMeshDataCreate() -> MeshId { MeshId::of(MeshRecord::pool().create()) }
+    fn dGeomTriMeshDataDestroy(data: MeshId) {
+        let data = data.get()?;
+        *data.mesh.borrow_mut() = None;
+        *data.flags.borrow_mut() = Vec::new();
+        MeshRecord::pool().destroy(data)
+    }
+    fn dGeomTriMeshDataBuildSingle(
+        data: MeshId, vertices: *const c_void, vertex_stride: c_int, vertex_count: c_int, indices: *const c_void,
+        index_count: c_int, tri_stride: c_int,
+    ) {
+        let arrays = arrays(vertices, true, vertex_stride, vertex_count, indices, index_count, tri_stride)?;
+        data.get()?.start(arrays, core::ptr::null())?
+    }
+    #[allow(clippy::too_many_arguments)]
+    fn dGeomTriMeshDataBuildSingle1(
+        data: MeshId, vertices: *const c_void, vertex_stride: c_int, vertex_count: c_int, indices: *const c_void,
+        index_count: c_int, tri_stride: c_int, normals: *const c_void,
+    ) {
+        let arrays = arrays(vertices, true, vertex_stride, vertex_count, indices, index_count, tri_stride)?;
+        data.get()?.start(arrays, normals)?
+    }
+    fn dGeomTriMeshDataBuildDouble(
+        data: MeshId, vertices: *const c_void, vertex_stride: c_int, vertex_count: c_int, indices: *const c_void,
+        index_count: c_int, tri_stride: c_int,
+    ) {
+        let arrays = arrays(vertices, false, vertex_stride, vertex_count, indices, index_count, tri_stride)?;
+        data.get()?.start(arrays, core::ptr::null())?
+    }
+    #[allow(clippy::too_many_arguments)]
+    fn dGeomTriMeshDataBuildDouble1(
+        data: MeshId, vertices: *const c_void, vertex_stride: c_int, vertex_count: c_int, indices: *const c_void,
+        index_count: c_int, tri_stride: c_int, normals: *const c_void,
+    ) {
+        let arrays = arrays(vertices, false, vertex_stride, vertex_count, indices, index_count, tri_stride)?;
+        data.get()?.start(arrays, normals)?
+    }
+    fn dGeomTriMeshDataBuildSimple(
+        data: MeshId, vertices: *const Real, vertex_count: c_int, indices: *const c_uint, index_count: c_int,
+    ) {
+        data.get()?.start(simple(vertices, vertex_count, indices, index_count)?, core::ptr::null())?
+    }
+    fn dGeomTriMeshDataBuildSimple1(
+        data: MeshId, vertices: *const Real, vertex_count: c_int, indices: *const c_uint, index_count: c_int,
+        normals: *const c_int,
+    ) {
+        data.get()?.start(simple(vertices, vertex_count, indices, index_count)?, normals.cast())?
+    }
+    fn dGeomTriMeshDataUpdate(data: MeshId) { data.get()?.build()? }
+    fn dGeomTriMeshDataPreprocess(data: MeshId) -> c_int { preprocess(data, 1)? }
+    /// Angles need no preparation here: the mesh knows what lies beyond each edge.
+    fn dGeomTriMeshDataPreprocess2(data: MeshId, requests: c_uint, _extra: *const isize) -> c_int {
+        preprocess(data, requests)?
+    }
+    fn dGeomTriMeshDataSet(data: MeshId, id: c_int, content: *mut c_void) {
+        let data = data.get()?;
+        match id {
+            0 => data.normals.set(content),
+            1 => data.given_flags.set(content),
+            _ => return Err(Fault::user("invalid data type")),
+        }
+    }
+    fn dGeomTriMeshDataGet2(data: MeshId, id: c_int, size: Out<usize>) -> *mut c_void {
+        let data = data.get()?;
+        let (pointer, bytes) = match id {
+            0 => (data.normals.get(), data.triangle_count() * 3 * size_of::<Real>()),
+            1 => (data.flags_pointer(), data.triangle_count()),
+            _ => return Err(Fault::user("invalid data type")),
+        };
+        size.set_if_wanted([if pointer.is_null() { 0 } else { bytes }]);
+        pointer
+    }
+    /// Declared by the headers, though libode lacks it.
+    fn dGeomTriMeshDataGet(data: MeshId, id: c_int) -> *mut c_void {
+        let data = data.get()?;
+        match id {
+            0 => data.normals.get(),
+            1 => data.flags_pointer(),
+            _ => return Err(Fault::user("invalid data type")),
+        }
+    }
+    fn dGeomTriMeshDataGetBuffer(data: MeshId, buffer: Out<*mut u8>, length: Out<c_int>) {
+        let data = data.get()?;
+        let pointer = data.flags_pointer();
+        buffer.set_if_wanted([pointer.cast()]);
+        length.set_if_wanted([if pointer.is_null() { 0 } else { data.triangle_count() as c_int }])
+    }
+    fn dGeomTriMeshDataSetBuffer(data: MeshId, buffer: *mut u8) { data.get()?.given_flags.set(buffer.cast()) }
+
+    fn dCreateTriMesh(
+        space: GeomId, data: MeshId, tri: Option<TriCallback>, array: Option<ArrayCallback>, ray: Option<RayCallback>,
+    ) -> GeomId {
+        if !data.is_null() {
+            data.get()?;
+        }
+        let handle = GeomRecord::create(class::TRIMESH, None, None, space)?;
+        let geom = handle.get()?;
+        geom.mesh.data.set(data);
+        geom.mesh.tri.set(tri);
+        geom.mesh.array.set(array);
+        geom.mesh.ray.set(ray);
+        handle
+    }
+    fn dGeomTriMeshSetData(geom: GeomId, data: MeshId) {
+        let geom = mesh_geom(geom)?;
+        data.get()?;
+        geom.mesh.data.set(data);
+        geom.mesh.version.set(0);
+        geom.moved()?
+    }
+    fn dGeomTriMeshGetData(geom: GeomId) -> MeshId { mesh_geom(geom)?.mesh.data.get() }
+    fn dGeomTriMeshGetTriMeshDataID(geom: GeomId) -> MeshId { mesh_geom(geom)?.mesh.data.get() }
+    fn dGeomTriMeshSetCallback(geom: GeomId, callback: Option<TriCallback>) { mesh_geom(geom)?.mesh.tri.set(callback) }
+    fn dGeomTriMeshGetCallback(geom: GeomId) -> Option<TriCallback> { mesh_geom(geom)?.mesh.tri.get() }
+    fn dGeomTriMeshSetArrayCallback(geom: GeomId, callback: Option<ArrayCallback>) {
+        mesh_geom(geom)?.mesh.array.set(callback)
+    }
+    fn dGeomTriMeshGetArrayCallback(geom: GeomId) -> Option<ArrayCallback> { mesh_geom(geom)?.mesh.array.get() }
+    fn dGeomTriMeshSetRayCallback(geom: GeomId, callback: Option<RayCallback>) {
+        mesh_geom(geom)?.mesh.ray.set(callback)
+    }
+    fn dGeomTriMeshGetRayCallback(geom: GeomId) -> Option<RayCallback> { mesh_geom(geom)?.mesh.ray.get() }
+    fn dGeomTriMeshSetTriMergeCallback(geom: GeomId, callback: Option<MergeCallback>) {
+        mesh_geom(geom)?.mesh.merge.set(callback)
+    }
+    fn dGeomTriMeshGetTriMergeCallback(geom: GeomId) -> Option<MergeCallback> { mesh_geom(geom)?.mesh.merge.get() }
+    /// Nothing is remembered between calls, so there is nothing to switch; the switch is kept for its reader.
+    fn dGeomTriMeshEnableTC(geom: GeomId, geom_class: c_int, enable: c_int) {
+        let geom = mesh_geom(geom)?;
+        if let Some(place) = coherent_class(geom_class) {
+            let mut coherence = geom.mesh.coherence.get();
+            coherence[place] = enable != 0;
+            geom.mesh.coherence.set(coherence);
+        }
+    }
+    fn dGeomTriMeshIsTCEnabled(geom: GeomId, geom_class: c_int) -> c_int {
+        let geom = mesh_geom(geom)?;
+        coherent_class(geom_class).is_some_and(|place| geom.mesh.coherence.get()[place]).into()
+    }
+    fn dGeomTriMeshClearTCCache(geom: GeomId) { mesh_geom(geom)?; }
+    fn dGeomTriMeshSetLastTransform(geom: GeomId, transform: In<Real, 16>) {
+        mesh_geom(geom)?.mesh.last_transform.set(transform.get()?)
+    }
+    fn dGeomTriMeshGetLastTransform(geom: GeomId) -> *const Real {
+        mesh_geom(geom)?.mesh.last_transform.as_ptr().cast_const().cast()
+    }
+    fn dGeomTriMeshGetTriangle(geom: GeomId, index: c_int, v0: OutVector, v1: OutVector, v2: OutVector) {
+        for (out, corner) in [v0, v1, v2].into_iter().zip(corners(geom, index)?) {
+            out.set_if_wanted(vector3(corner));
+        }
+    }
+    fn dGeomTriMeshGetPoint(geom: GeomId, index: c_int, u: Real, v: Real, point: OutVector) {
+        let [a, b, c] = corners(geom, index)?;
+        point.set(vector3(a * (1.0 - f(u) - f(v)) + b * f(u) + c * f(v)))?
+    }
+    fn dGeomTriMeshGetTriangleCount(geom: GeomId) -> c_int {
+        mesh_geom(geom)?.mesh.data.get().live().map_or(0, MeshRecord::triangle_count) as c_int
+    }
+
+    fn dMassSetTrimesh(mass: MassPointer, density: Real, geom: GeomId) {
+        mass.check(Fault::ARGUMENT)?;
+        let (vertices, triangles) = world_mesh(geom)?;
+        let made = Mass::trimesh_as_ode(f(density), &vertices, &triangles).map_err(|_| Fault::ARGUMENT)?;
+        store_checked(mass, &made)?
+    }
+    fn dMassSetTrimeshTotal(mass: MassPointer, total: Real, geom: GeomId) {
+        mass.check(Fault::ARGUMENT)?;
+        let (vertices, triangles) = world_mesh(geom)?;
+        let made = Mass::trimesh_total_as_ode(f(total), &vertices, &triangles).map_err(|_| Fault::ARGUMENT)?;
+        store_checked(mass, &made)?
+    }
+
+    /// Meshes alone answer: whether and how contacts with spheres are merged.
+    fn dGeomLowLevelControl(
+        geom: GeomId, control_class: c_int, code: c_int, value: *mut c_int, size: Out<c_int>,
+    ) -> c_int {
+        let geom = geom.get()?;
+        let [given] = size.get()?;
+        if geom.class.get() != class::TRIMESH || control_class != 1 || !(0..=2).contains(&code) {
+            return Err(Fault::user("unknown control class or code"));
+        }
+        let wanted = if code == 0 { 0 } else { size_of::<c_int>() as c_int };
+        if given != wanted || (wanted > 0 && value.is_null()) {
+            size.set([wanted])?;
+            return Ok(0);
+        }
+        match code {
+            // SAFETY: not null, and as large as the caller says (the function's contract).
+            1 => match unsafe { value.read() } {
+                0 => geom.mesh.merge_mode.set(0),
+                mode @ 1..=3 => geom.mesh.merge_mode.set(mode),
+                _ => return Err(Fault::ARGUMENT),
+            },
+            // SAFETY: as above.
+            2 => unsafe { value.write(geom.mesh.merge_mode.get().max(1)) },
+            _ => {}
+        }
+        1
+    }
+}
