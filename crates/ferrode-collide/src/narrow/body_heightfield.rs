@@ -60,5 +60,7 @@ pub fn body_heightfield(shape: &Shape, fa: &Frame, field: &Heightfield, ff: &Fra
     for c in out.added() {
         c.point.position = ff.point_to_world(c.point.position);
         c.point.normal = ff.vector_to_world(c.point.normal);
+        // From midway to the body's own surface, as over a plane.
+        c.point.position -= c.point.normal * (0.5 * c.point.depth);
     }
 }

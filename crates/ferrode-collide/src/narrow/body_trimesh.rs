@@ -18,7 +18,7 @@ impl TriMesh {
 
 /// Any convex shape of finite size and a mesh: the contacts of all triangles, without doubles.
 ///
-/// `side2` of a contact is the triangle. Where there are more contacts than wanted, the deepest and the most different
+/// Contacts lie on the body. `side2` of one is the triangle. Where there are more contacts than wanted, the deepest and the most different
 /// stay.
 pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
     // All in the mesh's coordinates.
@@ -37,5 +37,7 @@ pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: 
     for c in out.added() {
         c.point.position = fm.point_to_world(c.point.position);
         c.point.normal = fm.vector_to_world(c.point.normal);
+        // From midway to the body's own surface, as over a plane.
+        c.point.position -= c.point.normal * (0.5 * c.point.depth);
     }
 }

@@ -1,9 +1,10 @@
+use super::bodies::in_first_frame;
 use super::convex::touch;
 use super::manifold::add_manifold;
 use super::support::Body;
 use crate::{Contacts, Cylinder, Frame};
 use core::f64::consts::TAU;
-use ferrode_math::real;
+use ferrode_math::{Vec3, real};
 
 /// How near the cosine of the axes must be to ±1 for discs to lie on each other.
 const ALIGNED: f64 = 1e-3;
@@ -14,11 +15,13 @@ const ALIGNED: f64 = 1e-3;
 /// libode. All else: the axis of least overlap, and a face or side clipped to the other.
 pub fn cylinder_cylinder(a: &Cylinder, fa: &Frame, b: &Cylinder, fb: &Frame, out: &mut Contacts<'_>) {
     if out.options().unimportant || !nested_discs(a, fa, b, fb, out) {
-        let body_a = Body::cylinder(a, fa, fa.position);
-        let body_b = Body::cylinder(b, fb, fa.position);
-        if let Some(t) = touch(&body_a, &body_b) {
-            add_manifold(&body_a, &body_b, &t, fa.position, out);
-        }
+        in_first_frame(fa, fb, out, |fa, fb, out| {
+            let body_a = Body::cylinder(a, fa, Vec3::ZERO);
+            let body_b = Body::cylinder(b, fb, Vec3::ZERO);
+            if let Some(t) = touch(&body_a, &body_b) {
+                add_manifold(&body_a, &body_b, &t, Vec3::ZERO, out);
+            }
+        });
     }
 }
 

@@ -11,7 +11,7 @@ use ferrode_math::Pose;
 /// | pair | ODE's contacts | these |
 /// |---|---|---|
 /// | capsule and box | one, at whichever end is nearer: a lying capsule rocks for ever | both ends of the common stretch, with exact depth |
-/// | convex body and mesh | midway between the surfaces; of a ball one for each triangle near, which push it sideways | one for a ball, and all on the body, as over a plane: what slides has the same lever over either |
+/// | ball and mesh | one for each triangle near, which push the ball sideways | one |
 /// | convex body and heightfield | what the planes of the triangles cut, and corners of the field inside the body | as with a mesh |
 ///
 /// All other pairs have the contacts of `collide`, which are manifolds already.
@@ -68,13 +68,8 @@ fn body_surface(body: &Shape, fa: &Frame, surface: &Shape, fb: &Frame, out: &mut
                 // Sunk below the surface: the field is solid all the way down.
                 heightfield_shape(field, fb, body, fa, out);
                 out.swap();
-                return;
             }
         }
         _ => {}
-    }
-    // From midway to the body's own surface.
-    for c in out.added() {
-        c.point.position -= c.point.normal * (0.5 * c.point.depth);
     }
 }

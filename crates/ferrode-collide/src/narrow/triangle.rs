@@ -144,7 +144,12 @@ fn allowed(facet: &Facet, t: &Touch) -> bool {
         }
         match facet.neighbours[e] {
             Neighbour::None => {}
-            Neighbour::FlatOrConcave => return false,
+            // At a corner where this edge ends the normal may lean away from it.
+            Neighbour::FlatOrConcave => {
+                if t.normal.dot(out) > SAME {
+                    return false;
+                }
+            }
             Neighbour::Convex(other) => {
                 if t.normal.dot(out) < -SAME || along < other.dot(facet.normal) - SAME {
                     return false;

@@ -5,6 +5,12 @@ use ferrode_collide::*;
 use ferrode_math::{Mat3, Vec3, rotation};
 use serde_json::Value;
 
+/// The seed of property tests: `PROPTEST_RNG_SEED`, else always the same.
+pub fn seed() -> proptest::test_runner::RngSeed {
+    let seed = std::env::var("PROPTEST_RNG_SEED").ok().and_then(|s| s.parse().ok());
+    proptest::test_runner::RngSeed::Fixed(seed.unwrap_or(1))
+}
+
 /// A recorded number; "inf", "-inf" and "nan" are strings.
 pub fn number(v: &Value) -> f64 {
     match v.as_str() {
