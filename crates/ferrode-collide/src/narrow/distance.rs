@@ -86,10 +86,19 @@ fn body_field_distance(body: &Body<'_>, field: &Heightfield) -> Option<Distance>
         false => around.union(&whole).extent().length(),
         true => (around.extent() + whole.extent().min(Vec3::splat(1e150))).y + 100.0 * sx.max(sz),
     };
+    if !(around.is_finite() && last.is_finite()) {
+        return None;
+    }
     let mut margin = sx.max(sz);
     loop {
         let mut best: Option<Distance> = None;
         field.triangles_in(&around.expanded(margin), |corners| {
+            let [p, q, r] = corners;
+            let (min, max) = (p.min(q).min(r), p.max(q).max(r));
+            let gap = (min - around.max).max(around.min - max).max(Vec3::ZERO).length();
+            if best.is_some_and(|b| gap > b.distance.max(0.0)) {
+                return;
+            }
             let d = body_distance(body, &Body::triangle(corners), Vec3::ZERO);
             if best.is_none_or(|b| d.distance < b.distance) {
                 best = Some(d);

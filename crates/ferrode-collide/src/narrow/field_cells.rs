@@ -4,14 +4,16 @@ use crate::Heightfield;
 use ferrode_math::{Aabb, Vec3};
 
 /// Most cells along either axis that are looked at in a field without end.
-const MOST: i64 = 1000;
+const MOST: i64 = 100;
+/// Cells further than this from the middle are not told apart.
+const FAR: f64 = 1e15;
 
 impl Heightfield {
     /// Calls `found` with each triangle of the surface, in the field's coordinates, whose box touches `aabb`.
     pub(crate) fn triangles_in(&self, aabb: &Aabb, mut found: impl FnMut([Vec3; 3])) {
         let (sx, sz) = self.cell();
         let range = |low: f64, high: f64, whole: f64, size: f64, n: usize| {
-            // A conversion clamps what is too large.
+            let (low, high) = (low.clamp(-FAR * size, FAR * size), high.clamp(-FAR * size, FAR * size));
             let (from, to) = (
                 ((low + 0.5 * whole) / size).next_down().floor() as i64,
                 ((high + 0.5 * whole) / size).next_up().floor() as i64,
@@ -22,6 +24,9 @@ impl Heightfield {
                 (from.max(0), to.min(n as i64 - 2))
             }
         };
+        if !aabb.is_finite() {
+            return;
+        }
         let (x0, x1) = range(aabb.min.x, aabb.max.x, self.width(), sx, self.columns());
         let (z0, z1) = range(aabb.min.z, aabb.max.z, self.depth(), sz, self.rows());
         for x in x0..=x1 {
@@ -43,6 +48,9 @@ impl Heightfield {
         let (u, v) = ((x + 0.5 * self.width()) / sx, (z + 0.5 * self.depth()) / sz);
         let inside = |u: f64, n: usize| self.is_wrapped() || (0.0..=(n - 1) as f64).contains(&u);
         if !(inside(u, self.columns()) && inside(v, self.rows())) {
+            return None;
+        }
+        if !(u.abs() < FAR && v.abs() < FAR) {
             return None;
         }
         let (i, j) = (u.floor() as i64, v.floor() as i64);

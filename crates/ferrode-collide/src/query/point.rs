@@ -96,7 +96,7 @@ impl Colliders {
 }
 
 /// Depth of a point within a shape: the least distance to its surface; outside, minus the distance. A mesh counts as
-/// closed, and a heightfield as filled below its surface. `None` for rays, which have no inside.
+/// closed. `None` for rays and heightfields, which have no inside; see [`closest_point`] for the latter.
 pub fn point_depth(shape: &Shape, frame: &Frame, point: Vec3) -> Option<f64> {
     let local = frame.point_to_local(point);
     Some(match shape {
@@ -128,7 +128,7 @@ pub fn point_depth(shape: &Shape, frame: &Frame, point: Vec3) -> Option<f64> {
             let depth = planes.fold(f64::INFINITY, f64::min);
             if depth >= 0.0 { depth } else { -closest_point(shape, frame, point)?.distance }
         }
-        Shape::Ray(_) => return None,
+        Shape::Ray(_) | Shape::Heightfield(_) => return None,
         Shape::Custom(s) => s.get().point_depth(frame, point)?,
         _ => -closest_point(shape, frame, point)?.distance,
     })
