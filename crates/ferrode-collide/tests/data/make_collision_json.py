@@ -54,6 +54,8 @@ write(
         "meshes": full["meshes"],
         "cases": list(cases(["sphere", "plane", "ray", "trimesh"], ["trimesh"], 1)),
         "ray_trimesh_options": full["ray_trimesh_options"],
+        "sphere_trimesh_merge": full["sphere_trimesh_merge"],
+        "geom_transform": full["geom_transform"],
     },
 )
 write(
