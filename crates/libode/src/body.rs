@@ -82,6 +82,21 @@ fn turn(body: &BodyRecord, q: Quat, m: &Mat3) -> Outcome<()> {
     body_moved(body)
 }
 
+const NO_DIRECTION: Fault = Fault::internal("assertion \"the quaternion can be normalised\" failed");
+
+/// Gives a body a rotation, straightened out.
+pub fn rotate(body: &BodyRecord, given: &Mat3) -> Outcome<()> {
+    // As in ODE the quaternion is that of the matrix as given.
+    let straight = rotation::orthogonalize_as_ode(given).ok_or(Fault::ARGUMENT)?;
+    turn(body, Quat::from_matrix(given).normalized().ok_or(NO_DIRECTION)?, &straight)
+}
+
+/// Gives a body a quaternion, normalised.
+pub fn orient(body: &BodyRecord, q: Quat) -> Outcome<()> {
+    let q = q.normalized().ok_or(NO_DIRECTION)?;
+    turn(body, q, &q.to_matrix())
+}
+
 /// The address of a part of the record: it stays for the body's life, and the engine keeps it up to date.
 fn pointer<T: Copy + 'static>(
     body: BodyId,
@@ -118,19 +133,9 @@ export! {
         body_moved(body)?
     }
     fn dBodySetRotation(body: BodyId, rotation: InMatrix) {
-        let body = body.get()?;
-        let given = mat3(&rotation.get()?);
-        // As in ODE the quaternion is that of the matrix as given.
-        let straight = rotation::orthogonalize_as_ode(&given).ok_or(Fault::ARGUMENT)?;
-        let q = Quat::from_matrix(&given).normalized();
-        turn(body, q.ok_or(Fault::internal("assertion \"the quaternion can be normalised\" failed"))?, &straight)?
+        rotate(body.get()?, &mat3(&rotation.get()?))?
     }
-    fn dBodySetQuaternion(body: BodyId, q: InQuaternion) {
-        let body = body.get()?;
-        let q = quat(&q.get()?).normalized();
-        let q = q.ok_or(Fault::internal("assertion \"the quaternion can be normalised\" failed"))?;
-        turn(body, q, &q.to_matrix())?
-    }
+    fn dBodySetQuaternion(body: BodyId, q: InQuaternion) { orient(body.get()?, quat(&q.get()?))? }
     fn dBodySetLinearVel(body: BodyId, x: Real, y: Real, z: Real) {
         body.get()?.change(|body| body.linear_velocity.set([x, y, z, 0.0]))
     }

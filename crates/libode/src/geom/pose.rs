@@ -1,6 +1,7 @@
 //! Where geoms are: their own poses, their bodies', and offsets within these.
 
 use super::{GeomId, GeomRecord, body_moved};
+use crate::body;
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{
     InMatrix, InQuaternion, OutMatrix, OutQuaternion, OutVector, Real, Real4, Real12, mat3, matrix3, padded,
@@ -36,15 +37,10 @@ pub fn place(geom: &GeomRecord, frame: &Frame, turned: bool) -> Outcome<()> {
             (frame.position - rotation * offset.position, rotation)
         }
     };
-    body.change(|body| {
-        body.position.set(padded(position));
-        if turned {
-            body.rotation.set(matrix3(&rotation));
-            if let Some(q) = Quat::from_matrix(&rotation).normalized() {
-                body.quaternion.set(quaternion(q));
-            }
-        }
-    });
+    if turned {
+        body::rotate(body, &rotation)?;
+    }
+    body.change(|body| body.position.set(padded(position)));
     body_moved(body)
 }
 
@@ -75,9 +71,13 @@ fn set_offset_world_rotation(geom: GeomId, rotation: &Mat3) -> Outcome<()> {
     set_offset(geom, position, &(body.rotation.transpose() * *rotation))
 }
 
-fn unit(q: InQuaternion) -> Outcome<Mat3> {
-    let q = quat(&q.get()?).normalized();
-    Ok(q.ok_or(Fault::internal("assertion \"the quaternion can be normalised\" failed"))?.to_matrix())
+/// Copies a matrix to the program; as in ODE the padding there stays as it is.
+fn copy(mut m: Real12, to: OutMatrix) -> Outcome<()> {
+    let there = to.get()?;
+    for pad in [3, 7, 11] {
+        m[pad] = there[pad];
+    }
+    to.set(m)
 }
 
 /// Where the pose's numbers are: in the body's record if the geom is just where the body is.
@@ -127,12 +127,19 @@ export! {
         frame.rotation = mat3(&rotation.get()?);
         place(geom, &frame, true)?
     }
+    /// As in ODE the body of a geom with an offset gets the quaternion itself in the end, so that the geom is turned by
+    /// its offset too much.
     fn dGeomSetQuaternion(geom: GeomId, q: InQuaternion) {
         let geom = placeable(geom)?;
-        let mut frame = geom.frame();
-        // A free geom's is taken as it is.
-        frame.rotation = if geom.on_body().is_some() { unit(q)? } else { quat(&q.get()?).to_matrix() };
-        place(geom, &frame, true)?
+        let q = quat(&q.get()?);
+        if geom.on_body().is_none() || geom.has_offset.get() {
+            let mut frame = geom.frame();
+            frame.rotation = q.to_matrix();
+            place(geom, &frame, true)?;
+        }
+        if let Some(body) = geom.on_body() {
+            body::orient(body, q)?;
+        }
     }
     fn dGeomGetPosition(geom: GeomId) -> *const Real {
         pointer(geom, |geom| &geom.position, |body| &body.position)?
@@ -145,7 +152,7 @@ export! {
     }
     fn dGeomCopyRotation(geom: GeomId, rotation: OutMatrix) {
         let frame = placeable(geom)?.frame();
-        rotation.set(matrix3(&frame.rotation))?
+        copy(matrix3(&frame.rotation), rotation)?
     }
     fn dGeomGetQuaternion(geom: GeomId, q: OutQuaternion) {
         let geom = placeable(geom)?;
@@ -195,7 +202,7 @@ export! {
         position.set(vector3(vector(&offset_position(placeable(geom)?))))?
     }
     fn dGeomCopyOffsetRotation(geom: GeomId, rotation: OutMatrix) {
-        rotation.set(offset_rotation(placeable(geom)?))?
+        copy(offset_rotation(placeable(geom)?), rotation)?
     }
     fn dGeomGetOffsetQuaternion(geom: GeomId, q: OutQuaternion) {
         q.set(quaternion(Quat::from_matrix(&mat3(&offset_rotation(placeable(geom)?)))))?

@@ -1,6 +1,6 @@
 //! Geoms by shape: making them, their sizes, depths of points.
 
-use super::{GeomId, GeomRecord, class, pose};
+use super::{GeomId, GeomRecord, class};
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{Out, OutVector, Real, f, r, vec3, vector3};
 use crate::record::Required;
@@ -8,7 +8,7 @@ use core::ffi::{c_int, c_uint};
 use ferrode_collide::{
     Capsule, Convex, Cuboid, Cylinder, Plane, Ray, Shape, ShapeError, Sphere, point_depth,
 };
-use ferrode_math::{Mat3, Vec3, plane_space};
+use ferrode_math::Vec3;
 
 fn made<S: Into<Shape>>(shape: Result<S, ShapeError>) -> Outcome<Shape> {
     shape.map(Into::into).map_err(|_| Fault::ARGUMENT)
@@ -81,6 +81,21 @@ fn depth(geom: &GeomRecord, x: Real, y: Real, z: Real) -> Outcome<Real> {
     Ok(r(depth.ok_or(Fault::ARGUMENT)?))
 }
 
+/// The depth of a point in a box as 0.16.2 counts it: outside, minus the distance to the farthest of the six faces.
+fn box_depth(geom: &GeomRecord, x: Real, y: Real, z: Real) -> Outcome<Real> {
+    let local = geom.frame().point_to_local(vec3(x, y, z)).abs();
+    let half = shape_of!(geom, Cuboid).half_sides();
+    let (inside, far) = (half - local, half + local);
+    let least = inside.x.min(inside.y).min(inside.z);
+    Ok(r(if least >= 0.0 { least } else { -far.x.max(far.y).max(far.z) }))
+}
+
+/// A size as the engine takes it: infinity, which programs give to rays, counts as the largest.
+fn size(x: Real) -> f64 {
+    let x = f(x);
+    if x > 1e150 { 1e150 } else { x }
+}
+
 /// Changes a ray's options.
 fn ray_options(geom: GeomId, change: impl FnOnce(&mut Ray)) -> Outcome<()> {
     if let Some(Shape::Ray(shape)) = &mut *ray(geom)?.shape.borrow_mut() {
@@ -121,8 +136,8 @@ fn convex_by(
 }
 
 export! {
-    fn dCreateSphere(space: GeomId, radius: Real) -> GeomId { create(class::SPHERE, space, Sphere::new(f(radius)))? }
-    fn dGeomSphereSetRadius(geom: GeomId, radius: Real) { reshape(sphere(geom)?, Sphere::new(f(radius)))? }
+    fn dCreateSphere(space: GeomId, radius: Real) -> GeomId { create(class::SPHERE, space, Sphere::new(size(radius)))? }
+    fn dGeomSphereSetRadius(geom: GeomId, radius: Real) { reshape(sphere(geom)?, Sphere::new(size(radius)))? }
     fn dGeomSphereGetRadius(geom: GeomId) -> Real {
         let geom = sphere(geom)?;
         r(shape_of!(geom, Sphere).radius())
@@ -130,22 +145,22 @@ export! {
     fn dGeomSpherePointDepth(geom: GeomId, x: Real, y: Real, z: Real) -> Real { depth(sphere(geom)?, x, y, z)? }
 
     fn dCreateBox(space: GeomId, lx: Real, ly: Real, lz: Real) -> GeomId {
-        create(class::BOX, space, Cuboid::new(vec3(lx, ly, lz)))?
+        create(class::BOX, space, Cuboid::new(Vec3::new(size(lx), size(ly), size(lz))))?
     }
     fn dGeomBoxSetLengths(geom: GeomId, lx: Real, ly: Real, lz: Real) {
-        reshape(cuboid(geom)?, Cuboid::new(vec3(lx, ly, lz)))?
+        reshape(cuboid(geom)?, Cuboid::new(Vec3::new(size(lx), size(ly), size(lz))))?
     }
     fn dGeomBoxGetLengths(geom: GeomId, lengths: OutVector) {
         let geom = cuboid(geom)?;
         lengths.set(vector3(shape_of!(geom, Cuboid).sides()))?
     }
-    fn dGeomBoxPointDepth(geom: GeomId, x: Real, y: Real, z: Real) -> Real { depth(cuboid(geom)?, x, y, z)? }
+    fn dGeomBoxPointDepth(geom: GeomId, x: Real, y: Real, z: Real) -> Real { box_depth(cuboid(geom)?, x, y, z)? }
 
     fn dCreateCapsule(space: GeomId, radius: Real, length: Real) -> GeomId {
-        create(class::CAPSULE, space, Capsule::new(f(radius), f(length)))?
+        create(class::CAPSULE, space, Capsule::new(size(radius), size(length)))?
     }
     fn dGeomCapsuleSetParams(geom: GeomId, radius: Real, length: Real) {
-        reshape(capsule(geom)?, Capsule::new(f(radius), f(length)))?
+        reshape(capsule(geom)?, Capsule::new(size(radius), size(length)))?
     }
     fn dGeomCapsuleGetParams(geom: GeomId, radius: Out<Real>, length: Out<Real>) {
         let geom = capsule(geom)?;
@@ -156,10 +171,10 @@ export! {
     fn dGeomCapsulePointDepth(geom: GeomId, x: Real, y: Real, z: Real) -> Real { depth(capsule(geom)?, x, y, z)? }
 
     fn dCreateCylinder(space: GeomId, radius: Real, length: Real) -> GeomId {
-        create(class::CYLINDER, space, Cylinder::new(f(radius), f(length)))?
+        create(class::CYLINDER, space, Cylinder::new(size(radius), size(length)))?
     }
     fn dGeomCylinderSetParams(geom: GeomId, radius: Real, length: Real) {
-        reshape(cylinder(geom)?, Cylinder::new(f(radius), f(length)))?
+        reshape(cylinder(geom)?, Cylinder::new(size(radius), size(length)))?
     }
     fn dGeomCylinderGetParams(geom: GeomId, radius: Out<Real>, length: Out<Real>) {
         let geom = cylinder(geom)?;
@@ -182,11 +197,11 @@ export! {
     }
     fn dGeomPlanePointDepth(geom: GeomId, x: Real, y: Real, z: Real) -> Real { depth(plane(geom)?, x, y, z)? }
 
-    fn dCreateRay(space: GeomId, length: Real) -> GeomId { create(class::RAY, space, Ray::new(f(length)))? }
+    fn dCreateRay(space: GeomId, length: Real) -> GeomId { create(class::RAY, space, Ray::new(size(length).max(0.0)))? }
     fn dGeomRaySetLength(geom: GeomId, length: Real) {
         let geom = ray(geom)?;
         let old = shape_of!(geom, Ray);
-        let ray = Ray::new(f(length)).map(|mut new| {
+        let ray = Ray::new(size(length).max(0.0)).map(|mut new| {
             new.first_contact = old.first_contact;
             new.backface_cull = old.backface_cull;
             new.closest_hit = old.closest_hit;
@@ -203,11 +218,19 @@ export! {
         let geom = ray(geom)?;
         let direction = vec3(dx, dy, dz).normalized();
         let direction = direction.ok_or(Fault::internal("assertion \"!bSafeNormalize3Fault\" failed"))?;
-        let (p, q) = plane_space(direction);
-        let mut frame = geom.frame();
-        frame.position = vec3(px, py, pz);
-        frame.rotation = Mat3::from_columns(p, q, direction);
-        pose::place(geom, &frame, true)?
+        if let Some(parent) = geom.parent() {
+            parent.require_unlocked()?;
+        }
+        // As in ODE only the direction's column changes, on a body too, whose quaternion stays.
+        let (position, rotation) = match geom.on_body() {
+            Some(body) if !geom.has_offset.get() => (&body.current().position, &body.rotation),
+            _ => (&geom.position, &geom.rotation),
+        };
+        position.set([px, py, pz, 0.0]);
+        let mut m = rotation.get();
+        (m[2], m[6], m[10]) = (r(direction.x), r(direction.y), r(direction.z));
+        rotation.set(m);
+        geom.moved()?
     }
     fn dGeomRayGet(geom: GeomId, start: OutVector, direction: OutVector) {
         let frame = ray(geom)?.frame();

@@ -4,6 +4,7 @@ use super::{GeomId, GeomRecord, class};
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{In, Out, Real, f};
 use crate::record::Required;
+use core::cell::Cell;
 use core::ffi::c_int;
 use ferrode_collide::space::{
     AxisOrder, BroadPhase, HashSpace, Proxy, ProxyId, ProxyTable, QuadtreeSpace, Scratch, SimpleSpace,
@@ -28,6 +29,8 @@ pub struct SpaceData {
     scratch: Scratch,
     cleanup: bool,
     sublevel: c_int,
+    /// An index and its member, while the list stays as it is.
+    cursor: Cell<Option<(usize, ProxyId)>>,
 }
 
 impl SpaceData {
@@ -40,6 +43,7 @@ impl SpaceData {
             scratch: Scratch::default(),
             cleanup: true,
             sublevel: 0,
+            cursor: Cell::new(None),
         }
     }
 
@@ -72,8 +76,36 @@ impl SpaceData {
         }
     }
 
+    /// Members newest or last moved first, which for sweep and prune is not the order of the index.
+    fn linked(&self) -> Vec<GeomId> {
+        self.broad().members().iter(&self.table).map(|id| self.members[id.0 as usize]).collect()
+    }
+
+    /// The member of an index, reached from the last one asked for when the program counts up.
+    fn member(&self, index: usize) -> Option<GeomId> {
+        let member = |id: ProxyId| self.members[id.0 as usize];
+        if let Some([dirty, clean]) = self.broad().arrays() {
+            return dirty
+                .get(index)
+                .or_else(|| clean.get(index.checked_sub(dirty.len())?))
+                .map(|id| member(*id));
+        }
+        let list = self.broad().members();
+        let (mut place, mut id) = match self.cursor.get() {
+            Some((place, id)) if place <= index => (place, Some(id)),
+            _ => (0, list.first()),
+        };
+        while place < index {
+            id = list.after(&self.table, id?);
+            place += 1;
+        }
+        self.cursor.set(Some((index, id?)));
+        id.map(member)
+    }
+
     /// A member's box is about to change.
     pub fn moved(&mut self, proxy: u32) {
+        self.cursor.set(None);
         let (broad, table, _) = self.parts();
         broad.moved(table, ProxyId(proxy));
     }
@@ -137,6 +169,7 @@ pub fn add(space: &'static GeomRecord, geom: &'static GeomRecord) -> Outcome<()>
         }
         contents.members[number as usize] = GeomId::of(geom);
         geom.proxy.set(number);
+        contents.cursor.set(None);
         let (broad, table, _) = contents.parts();
         table.set(ProxyId(number), proxy);
         broad.insert(table, ProxyId(number));
@@ -151,6 +184,7 @@ pub fn remove(space: &'static GeomRecord, geom: &'static GeomRecord) -> Outcome<
     space.require_unlocked()?;
     let number = geom.proxy.get();
     with(space, |contents| {
+        contents.cursor.set(None);
         let (broad, table, _) = contents.parts();
         broad.remove(table, ProxyId(number));
         contents.members[number as usize] = GeomId::NULL;
@@ -259,7 +293,8 @@ pub fn pairs_between(a: &'static GeomRecord, b: &'static GeomRecord, pairs: &mut
                 lookup(b, a, &mut |member| pairs.push((ga, member)))
             } else {
                 let (smaller, larger) = if na >= nb { (b, a) } else { (a, b) };
-                for other in with(smaller, |contents| contents.list())?.into_iter().filter_map(GeomId::live) {
+                for other in with(smaller, |contents| contents.linked())?.into_iter().filter_map(GeomId::live)
+                {
                     let id = GeomId::of(other);
                     lookup(larger, other, &mut |member| {
                         pairs.push(if na >= nb { (member, id) } else { (id, member) });
@@ -351,8 +386,8 @@ export! {
         with(get(space)?, |contents| contents.broad().members().len())? as c_int
     }
     fn dSpaceGetGeom(space: GeomId, index: c_int) -> GeomId {
-        let list = with(get(space)?, |contents| contents.list())?;
-        usize::try_from(index).ok().and_then(|index| list.get(index).copied()).ok_or(Fault::ARGUMENT)?
+        let index = usize::try_from(index).map_err(|_| Fault::ARGUMENT)?;
+        with(get(space)?, |contents| contents.member(index))?.ok_or(Fault::ARGUMENT)?
     }
     fn dSpaceGetClass(space: GeomId) -> c_int { get(space)?.class.get() }
 }
