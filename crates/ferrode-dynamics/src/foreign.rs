@@ -24,6 +24,11 @@ pub struct BodyState {
 #[doc(hidden)]
 pub type MovedObserver<'a> = &'a mut dyn FnMut(&mut World, BodyKey);
 
+/// A quaternion's numbers.
+pub(crate) fn numbers(q: Quat) -> Vec<f64> {
+    vec![q.w, q.x, q.y, q.z]
+}
+
 impl Body {
     #[doc(hidden)]
     pub fn state(&self) -> BodyState {
@@ -113,6 +118,15 @@ impl World {
     #[doc(hidden)]
     pub fn joint_param_number(&self, joint: JointKey, n: i32) -> Result<f64, Error> {
         Ok(self.joints.at(self.joint_index(joint)?).kind.model().param(n))
+    }
+
+    /// The joint's own numbers as ODE's interchange format names them, in body coordinates.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchJoint`].
+    #[doc(hidden)]
+    pub fn joint_details(&self, joint: JointKey) -> Result<Vec<(&'static str, Vec<f64>)>, Error> {
+        Ok(self.joints.at(self.joint_index(joint)?).kind.model().details())
     }
 
     /// As [`World::create_contact`], whatever the numbers.

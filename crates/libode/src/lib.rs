@@ -15,6 +15,7 @@ mod body;
 mod contact;
 mod cooperative;
 mod errors;
+mod export_dif;
 mod fault;
 mod geom;
 mod init;

@@ -116,6 +116,20 @@ impl LimitMotors for AMotor {
 }
 
 impl JointModel for AMotor {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("num", vec![self.count as f64]),
+            ("mode", vec![f64::from(u8::from(self.mode == AMotorMode::Euler))]),
+            ("rel", self.axes.iter().map(|axis| f64::from(axis.frame as u8)).collect()),
+            ("axis1", self.axes[0].axis.to_array().to_vec()),
+            ("axis2", self.axes[1].axis.to_array().to_vec()),
+            ("axis3", self.axes[2].axis.to_array().to_vec()),
+            ("angle1", vec![self.axes[0].angle]),
+            ("angle2", vec![self.axes[1].angle]),
+            ("angle3", vec![self.axes[2].angle]),
+        ]
+    }
+
     fn row_count(&mut self, ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         if self.mode == AMotorMode::Euler {
             let angles = self.euler_angles(ends);

@@ -23,6 +23,13 @@ impl Ball {
 }
 
 impl JointModel for Ball {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("anchor1", self.anchors.first.to_array().to_vec()),
+            ("anchor2", self.anchors.second.to_array().to_vec()),
+        ]
+    }
+
     fn row_count(&mut self, _ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         RowCount::new(3, 3)
     }

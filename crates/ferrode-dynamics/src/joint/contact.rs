@@ -290,6 +290,37 @@ fn relative_velocity(row: &Row, ends: &Ends<'_>) -> f64 {
 }
 
 impl JointModel for Contact {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        let s = &self.surface;
+        let mut details = vec![
+            ("pos", self.point.position.to_array().to_vec()),
+            ("normal", self.point.normal.to_array().to_vec()),
+            ("depth", vec![self.point.depth]),
+            ("mu", vec![s.mu]),
+        ];
+        let optional = [
+            (SurfaceMode::MU2, "mu2", s.mu2),
+            (SurfaceMode::BOUNCE, "bounce", s.bounce),
+            (SurfaceMode::BOUNCE, "bounce_vel", s.bounce_velocity),
+            (SurfaceMode::SOFT_ERP, "soft_ERP", s.soft_erp),
+            (SurfaceMode::SOFT_CFM, "soft_CFM", s.soft_cfm),
+            (SurfaceMode::MOTION1, "motion1", s.motion1),
+            (SurfaceMode::MOTION2, "motion2", s.motion2),
+            (SurfaceMode::SLIP1, "slip1", s.slip1),
+            (SurfaceMode::SLIP2, "slip2", s.slip2),
+        ];
+        let used = optional.iter().filter(|(mode, ..)| s.mode.has(*mode));
+        details.extend(used.map(|(_, name, value)| (*name, vec![*value])));
+        let approximation = (s.mode.0 >> 12) & 3;
+        if approximation != 0 {
+            details.push(("friction_approximation", vec![f64::from(approximation)]));
+        }
+        if s.mode.has(SurfaceMode::FDIR1) {
+            details.push(("fdir1", self.fdir1.to_array().to_vec()));
+        }
+        details
+    }
+
     fn row_count(&mut self, _ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         let s = &mut self.surface;
         for coefficient in [&mut s.mu, &mut s.mu2, &mut s.rho, &mut s.rho2, &mut s.rho_n] {

@@ -39,6 +39,13 @@ impl Fixed {
 }
 
 impl JointModel for Fixed {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("qrel", crate::foreign::numbers(self.initial)[..3].to_vec()),
+            ("offset", self.offset.to_array().to_vec()),
+        ]
+    }
+
     fn row_count(&mut self, _ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         RowCount::new(6, 6)
     }

@@ -45,6 +45,16 @@ impl Hinge {
 }
 
 impl JointModel for Hinge {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("anchor1", self.anchors.first.to_array().to_vec()),
+            ("anchor2", self.anchors.second.to_array().to_vec()),
+            ("axis1", self.axes[0].to_array().to_vec()),
+            ("axis2", self.axes[1].to_array().to_vec()),
+            ("qrel", crate::foreign::numbers(self.initial)),
+        ]
+    }
+
     fn row_count(&mut self, ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         let angle = self.limit_motor.has_angular_stops().then(|| self.internal_angle(ends));
         self.limit_motor.test(angle);

@@ -81,6 +81,19 @@ impl Hinge2 {
 }
 
 impl JointModel for Hinge2 {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("anchor1", self.anchors.first.to_array().to_vec()),
+            ("anchor2", self.anchors.second.to_array().to_vec()),
+            ("axis1", self.axes[0].to_array().to_vec()),
+            ("axis2", self.axes[1].to_array().to_vec()),
+            ("v1", self.reference1[0].to_array().to_vec()),
+            ("v2", self.reference1[1].to_array().to_vec()),
+            ("susp_erp", vec![self.suspension.erp]),
+            ("susp_cfm", vec![self.suspension.cfm]),
+        ]
+    }
+
     fn row_count(&mut self, ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         let angle = self.limit_motor1.has_angular_stops().then(|| self.angle1(ends));
         self.limit_motor1.test(angle);

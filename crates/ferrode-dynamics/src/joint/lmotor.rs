@@ -47,6 +47,16 @@ impl LimitMotors for LMotor {
 }
 
 impl JointModel for LMotor {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("num", vec![self.count as f64]),
+            ("rel", self.axes.iter().map(|axis| f64::from(axis.frame as u8)).collect()),
+            ("axis1", self.axes[0].axis.to_array().to_vec()),
+            ("axis2", self.axes[1].axis.to_array().to_vec()),
+            ("axis3", self.axes[2].axis.to_array().to_vec()),
+        ]
+    }
+
     fn row_count(&mut self, _ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         RowCount::new(self.driven().map(|(_, axis)| axis.motor.row_count()).sum(), 0)
     }

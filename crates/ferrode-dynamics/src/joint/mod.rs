@@ -131,6 +131,11 @@ pub(crate) trait JointModel {
         0.0
     }
 
+    /// The joint's own numbers as ODE's interchange format names them, in body coordinates.
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        Vec::new()
+    }
+
     /// Position error that is left, as the largest of metres and radians; for reports.
     fn error(&self, _ends: &Ends<'_>) -> JointError {
         JointError::default()

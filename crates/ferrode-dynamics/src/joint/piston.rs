@@ -53,6 +53,16 @@ impl Piston {
 }
 
 impl JointModel for Piston {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("anchor1", self.anchors.first.to_array().to_vec()),
+            ("anchor2", self.anchors.second.to_array().to_vec()),
+            ("axis1", self.axes[0].to_array().to_vec()),
+            ("axis2", self.axes[1].to_array().to_vec()),
+            ("qrel", crate::foreign::numbers(self.initial)),
+        ]
+    }
+
     fn row_count(&mut self, ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         let position = self.prismatic.has_linear_stops().then(|| self.position(ends));
         self.prismatic.test(position);

@@ -63,6 +63,17 @@ impl PR {
 }
 
 impl JointModel for PR {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("anchor2", self.anchors.second.to_array().to_vec()),
+            ("axisR1", self.rotoide_axes[0].to_array().to_vec()),
+            ("axisR2", self.rotoide_axes[1].to_array().to_vec()),
+            ("axisP1", self.prismatic_axis.to_array().to_vec()),
+            ("qrel", crate::foreign::numbers(self.initial)),
+            ("offset", self.anchors.first.to_array().to_vec()),
+        ]
+    }
+
     fn row_count(&mut self, ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         let position = self.prismatic.has_linear_stops().then(|| self.position(ends));
         self.prismatic.test(position);

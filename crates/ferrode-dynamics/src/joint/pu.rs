@@ -54,6 +54,18 @@ impl PU {
 }
 
 impl JointModel for PU {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("anchor1", self.anchors.first.to_array().to_vec()),
+            ("anchor2", self.anchors.second.to_array().to_vec()),
+            ("axis1", self.axes.local[0].to_array().to_vec()),
+            ("axis2", self.axes.local[1].to_array().to_vec()),
+            ("axisP", self.prismatic_axis.to_array().to_vec()),
+            ("qrel1", crate::foreign::numbers(self.axes.initial[0])),
+            ("qrel2", crate::foreign::numbers(self.axes.initial[1])),
+        ]
+    }
+
     fn row_count(&mut self, ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         let position = self.prismatic.has_linear_stops().then(|| self.position(ends));
         self.prismatic.test(position);

@@ -54,6 +54,14 @@ impl Slider {
 }
 
 impl JointModel for Slider {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("axis1", self.axis.to_array().to_vec()),
+            ("qrel", crate::foreign::numbers(self.initial)),
+            ("offset", self.offset.to_array().to_vec()),
+        ]
+    }
+
     fn row_count(&mut self, ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         let position = self.limit_motor.has_linear_stops().then(|| self.position(ends));
         self.limit_motor.test(position);

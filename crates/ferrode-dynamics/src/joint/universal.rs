@@ -37,6 +37,17 @@ impl Universal {
 }
 
 impl JointModel for Universal {
+    fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        vec![
+            ("anchor1", self.anchors.first.to_array().to_vec()),
+            ("anchor2", self.anchors.second.to_array().to_vec()),
+            ("axis1", self.axes.local[0].to_array().to_vec()),
+            ("axis2", self.axes.local[1].to_array().to_vec()),
+            ("qrel1", crate::foreign::numbers(self.axes.initial[0])),
+            ("qrel2", crate::foreign::numbers(self.axes.initial[1])),
+        ]
+    }
+
     fn row_count(&mut self, ends: &Ends<'_>, _ctx: &StepContext) -> RowCount {
         let stops = [self.limit_motor1.has_angular_stops(), self.limit_motor2.has_angular_stops()];
         let angles = if stops == [false; 2] { [0.0; 2] } else { self.axes.angles(ends) };

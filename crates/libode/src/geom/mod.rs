@@ -305,6 +305,50 @@ pub fn body_moved(body: &BodyRecord) -> Outcome<()> {
     Ok(())
 }
 
+/// All geoms of a body, the last attached first.
+pub fn all_of(body: &'static BodyRecord) -> Vec<GeomId> {
+    let after =
+        |geom: &GeomId| geom.live().map(|geom| geom.next_on_body.get()).filter(|next| !next.is_null());
+    let first = Some(body.first_geom.get()).filter(|first| !first.is_null());
+    core::iter::successors(first, after).collect()
+}
+
+impl GeomRecord {
+    /// The geom as the lines of ODE's interchange format.
+    pub fn described(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        for (name, bits) in [("category_bits", self.category.get()), ("collide_bits", self.collide.get())] {
+            if bits != c_ulong::MAX {
+                lines.push(format!("{name} = {bits}"));
+            }
+        }
+        if self.disabled.get() {
+            lines.push("disabled = 1,".into());
+        }
+        let (kind, sizes): (_, Vec<(&str, String)>) = match &*self.shape.borrow() {
+            Some(Shape::Sphere(s)) => ("sphere", vec![("radius", s.radius().to_string())]),
+            Some(Shape::Cuboid(s)) => {
+                let [x, y, z] = s.sides().to_array();
+                ("box", vec![("sides", format!("{{{x},{y},{z}}}"))])
+            }
+            Some(Shape::Capsule(s)) => {
+                ("capsule", vec![("radius", s.radius().to_string()), ("length", s.length().to_string())])
+            }
+            Some(Shape::Cylinder(s)) => {
+                ("cylinder", vec![("radius", s.radius().to_string()), ("length", s.length().to_string())])
+            }
+            Some(Shape::Ray(s)) => ("ray", vec![("length", s.length().to_string())]),
+            Some(Shape::Convex(_)) => ("convex", Vec::new()),
+            Some(Shape::TriMesh(_)) => ("trimesh", Vec::new()),
+            Some(Shape::Heightfield(_)) => ("heightfield", Vec::new()),
+            _ => ("unknown", Vec::new()),
+        };
+        lines.push(format!("type = \"{kind}\","));
+        lines.extend(sizes.into_iter().map(|(name, value)| format!("{name} = {value},")));
+        lines
+    }
+}
+
 /// Takes all geoms off a body that is about to die.
 pub fn leave_dying_body(body: &BodyRecord) {
     while let Some(geom) = body.first_geom.get().live() {
