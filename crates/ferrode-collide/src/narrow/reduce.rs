@@ -13,7 +13,7 @@ pub(crate) fn reduce(out: &mut Contacts<'_>, size: f64) {
         let c = list[i];
         let twin = list[..count].iter_mut().find(|k| {
             (k.point.position - c.point.position).length_squared() < near * near
-                && k.point.normal.dot(c.point.normal) > 1.0 - 1e-4
+                && k.point.normal.dot(c.point.normal) > 1.0 - 1e-8
         });
         match twin {
             Some(k) => {
