@@ -25,7 +25,7 @@ fn body_field(body: &Body<'_>, path: Vec3, field: &Heightfield) -> Option<CastHi
     let start = bounds(body);
     let end = Aabb::new(start.min + path, start.max + path);
     let mut best: Option<CastHit> = None;
-    field.triangles_in(&start.union(&end), |corners| {
+    field.triangles_in(&start.union(&end), 2000, |corners| {
         let hit = bodies(body, path, &Body::triangle(corners));
         if hit.is_some_and(|h| h.before(best)) {
             best = hit;

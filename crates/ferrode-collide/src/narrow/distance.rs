@@ -76,6 +76,10 @@ pub fn distance_frames(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> Option<Dista
     }
 }
 
+/// Of a field without end, the cells along either axis that a distance looks at: what is wider than these, or further
+/// away, gets the distance to the part below its middle.
+const MOST_CELLS: i64 = 16;
+
 /// The least distance to a triangle of a field, in whose coordinates the body is.
 fn body_field_distance(body: &Body<'_>, field: &Heightfield) -> Option<Distance> {
     let (sx, sz) = field.cell();
@@ -92,7 +96,7 @@ fn body_field_distance(body: &Body<'_>, field: &Heightfield) -> Option<Distance>
     let mut margin = sx.max(sz);
     loop {
         let mut best: Option<Distance> = None;
-        field.triangles_in(&around.expanded(margin), |corners| {
+        field.triangles_in(&around.expanded(margin), MOST_CELLS, |corners| {
             let [p, q, r] = corners;
             let (min, max) = (p.min(q).min(r), p.max(q).max(r));
             let gap = (min - around.max).max(around.min - max).max(Vec3::ZERO).length();

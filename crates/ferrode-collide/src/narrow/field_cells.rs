@@ -3,14 +3,13 @@
 use crate::Heightfield;
 use ferrode_math::{Aabb, Vec3};
 
-/// Most cells along either axis that are looked at in a field without end.
-const MOST: i64 = 100;
 /// Cells further than this from the middle are not told apart.
 const FAR: f64 = 1e15;
 
 impl Heightfield {
-    /// Calls `found` with each triangle of the surface, in the field's coordinates, whose box touches `aabb`.
-    pub(crate) fn triangles_in(&self, aabb: &Aabb, mut found: impl FnMut([Vec3; 3])) {
+    /// Calls `found` with each triangle of the surface, in the field's coordinates, whose box touches `aabb`. Of a field
+    /// without end it looks at no more than `most` cells along either axis, those in the middle.
+    pub(crate) fn triangles_in(&self, aabb: &Aabb, most: i64, mut found: impl FnMut([Vec3; 3])) {
         let (sx, sz) = self.cell();
         let range = |low: f64, high: f64, whole: f64, size: f64, n: usize| {
             let (low, high) = (low.clamp(-FAR * size, FAR * size), high.clamp(-FAR * size, FAR * size));
@@ -19,7 +18,8 @@ impl Heightfield {
                 ((high + 0.5 * whole) / size).next_up().floor() as i64,
             );
             if self.is_wrapped() {
-                (from, to.min(from.saturating_add(MOST)))
+                let (middle, half) = (from + (to - from) / 2, most / 2);
+                (from.max(middle - half), to.min(middle + half))
             } else {
                 (from.max(0), to.min(n as i64 - 2))
             }
