@@ -75,6 +75,17 @@ impl GeomRecord {
         Some(six)
     }
 
+    /// Whether the class's own test of boxes, if it has one, lets a pair through.
+    pub fn admits(&'static self, other: &'static Self) -> bool {
+        if self.class.get() < FIRST_USER {
+            return true;
+        }
+        let Some(test) = class_of(self.class.get()).and_then(|class| class.aabb_test) else { return true };
+        let mut six = super::six(&other.current_aabb());
+        // SAFETY: the program's own function, called as the header says with the other geom's box.
+        unsafe { test(GeomId::of(self), GeomId::of(other), six.as_mut_ptr()) != 0 }
+    }
+
     /// The geom that a wrapper moves.
     pub fn inner(&self) -> Option<&'static Self> {
         (self.class.get() == class::TRANSFORM).then(|| self.own.inner.get().live()).flatten()

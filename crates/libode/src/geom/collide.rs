@@ -73,9 +73,13 @@ fn contacts_of(
     let options = CollideOptions { max_contacts, ..options };
     let mut found = FOUND.take();
     found.clear();
-    if let (Some(sa), Some(sb)) = (&*sa.shape.borrow(), &*sb.shape.borrow()) {
-        collide_frames((sa, &fa), (sb, &fb), options, &mut found);
-    }
+    sa.shape.with(|sa| {
+        sb.shape.with(|sb| {
+            if let (Some(sa), Some(sb)) = (sa, sb) {
+                collide_frames((sa, &fa), (sb, &fb), options, &mut found);
+            }
+        });
+    });
     if let Some(filter) = filter {
         filter.apply(&mut found);
     }
@@ -182,7 +186,7 @@ impl Filter {
     /// Where in a triangle a point is: (1 - u - v) v0 + u v1 + v v2.
     fn barycentrics(&self, triangle: c_int, point: Vec3) -> (f64, f64) {
         let local = self.mesh.frame().point_to_local(point);
-        match &*self.mesh.shape.borrow() {
+        self.mesh.shape.with(|shape| match shape {
             Some(Shape::TriMesh(mesh)) if (0..mesh.triangles().len() as c_int).contains(&triangle) => {
                 let [a, b, c] = mesh.corners(triangle.cast_unsigned());
                 let (e, f, p) = (b - a, c - a, local - a);
@@ -192,7 +196,7 @@ impl Filter {
                 ((ff * pe - ef * pf) * k, (ee * pf - ef * pe) * k)
             }
             _ => (0.0, 0.0),
-        }
+        })
     }
 }
 
@@ -212,6 +216,8 @@ fn collide(
     for (a, b) in pairs {
         if count < (flags & 0xffff) as usize
             && let (Some(a), Some(b)) = (a.live(), b.live())
+            && a.admits(b)
+            && b.admits(a)
         {
             count = collide(a, b, flags, target, count)?;
         }
@@ -239,7 +245,10 @@ impl Drop for Lock<'_> {
 fn tell(pairs: &Pairs, spaces: &[&'static GeomRecord], data: *mut c_void, callback: NearCallback) {
     let _lock = Lock::new(spaces);
     for (a, b) in pairs {
-        if a.live().is_some() && b.live().is_some() {
+        if let (Some(first), Some(second)) = (a.live(), b.live())
+            && first.admits(second)
+            && second.admits(first)
+        {
             // SAFETY: the program's own function, called as its header says.
             unsafe { callback(data, *a, *b) };
         }

@@ -80,7 +80,7 @@ impl GeomRecord {
         }
         let Some(data) = self.field.data.get().live() else { return };
         if self.field.version.replace(data.version.get()) != data.version.get() {
-            *self.shape.borrow_mut() = data.field.borrow().clone().map(Shape::Heightfield);
+            self.shape.set(data.field.borrow().clone().map(Shape::Heightfield));
         }
     }
 }

@@ -6,6 +6,7 @@
 mod classes;
 mod collide;
 mod heightfield;
+mod kept;
 mod pose;
 mod shapes;
 mod space;
@@ -19,6 +20,7 @@ use core::cell::{Cell, RefCell};
 use core::ffi::{c_int, c_ulong, c_void};
 use ferrode_collide::{Frame, Shape};
 use ferrode_math::{Aabb, Mat3, Vec3};
+use kept::Kept;
 
 pub use classes::forget as forget_classes;
 pub use space::SpaceData;
@@ -70,7 +72,8 @@ pub struct GeomRecord {
     has_offset: Cell<bool>,
     offset_position: Cell<Real4>,
     offset_rotation: Cell<Real12>,
-    shape: RefCell<Option<Shape>>,
+    /// Threads may look at one geom at once, so there is no count of who does.
+    shape: Kept<Option<Shape>>,
     contents: RefCell<Option<Box<SpaceData>>>,
     /// Collisions that report this space's members now.
     locks: Cell<u32>,
@@ -100,7 +103,7 @@ impl GeomRecord {
         geom.rotation.set(crate::real::matrix3(&Mat3::IDENTITY));
         geom.dirty.set(true);
         geom.stale.set(true);
-        *geom.shape.borrow_mut() = shape;
+        geom.shape.set(shape);
         *geom.contents.borrow_mut() = contents.map(Box::new);
         if let Some(parent) = parent {
             space::add(parent, geom)?;
@@ -147,7 +150,7 @@ impl GeomRecord {
 
     /// Whether spaces look at it: enabled, and of some size.
     fn is_visible(&self) -> bool {
-        !self.disabled.get() && !self.shape.borrow().as_ref().is_some_and(Shape::is_zero_sized)
+        !self.disabled.get() && !self.shape.with(|shape| shape.as_ref().is_some_and(Shape::is_zero_sized))
     }
 
     /// The geom's pose within its body.
@@ -192,7 +195,7 @@ impl GeomRecord {
         }
         match self.solid() {
             Some((geom, frame)) => {
-                geom.shape.borrow().as_ref().map_or(Aabb::EMPTY, |shape| shape.aabb_in(&frame))
+                geom.shape.with(|shape| shape.as_ref().map_or(Aabb::EMPTY, |shape| shape.aabb_in(&frame)))
             }
             None => Aabb::new(Vec3::ZERO, Vec3::ZERO),
         }
@@ -288,7 +291,7 @@ impl GeomRecord {
         if let Some(parent) = self.parent() {
             space::remove(parent, self)?;
         }
-        *self.shape.borrow_mut() = None;
+        self.shape.set(None);
         *self.contents.borrow_mut() = None;
         GEOMS.destroy(self);
         Ok(())
@@ -325,7 +328,7 @@ impl GeomRecord {
         if self.disabled.get() {
             lines.push("disabled = 1,".into());
         }
-        let (kind, sizes): (_, Vec<(&str, String)>) = match &*self.shape.borrow() {
+        let (kind, sizes): (_, Vec<(&str, String)>) = self.shape.with(|shape| match shape {
             Some(Shape::Sphere(s)) => ("sphere", vec![("radius", s.radius().to_string())]),
             Some(Shape::Cuboid(s)) => {
                 let [x, y, z] = s.sides().to_array();
@@ -342,7 +345,7 @@ impl GeomRecord {
             Some(Shape::TriMesh(_)) => ("trimesh", Vec::new()),
             Some(Shape::Heightfield(_)) => ("heightfield", Vec::new()),
             _ => ("unknown", Vec::new()),
-        };
+        });
         lines.push(format!("type = \"{kind}\","));
         lines.extend(sizes.into_iter().map(|(name, value)| format!("{name} = {value},")));
         lines

@@ -30,7 +30,7 @@ fn reshape<S: Into<Shape>>(geom: &GeomRecord, shape: Result<S, ShapeError>) -> O
     if let Some(parent) = geom.parent() {
         parent.require_unlocked()?;
     }
-    *geom.shape.borrow_mut() = Some(shape);
+    geom.shape.set(Some(shape));
     geom.tell_space();
     geom.moved()
 }
@@ -38,10 +38,10 @@ fn reshape<S: Into<Shape>>(geom: &GeomRecord, shape: Result<S, ShapeError>) -> O
 /// Reads a geom's shape, which is of the kind that its class says.
 macro_rules! shape_of {
     ($geom:ident, $kind:ident) => {
-        match &*$geom.shape.borrow() {
-            Some(Shape::$kind(shape)) => shape.clone(),
-            _ => return Err(Fault::ARGUMENT),
-        }
+        $geom.shape.with(|shape| match shape {
+            Some(Shape::$kind(shape)) => Ok(shape.clone()),
+            _ => Err(Fault::ARGUMENT),
+        })?
     };
 }
 
@@ -77,7 +77,8 @@ fn plane_by(a: Real, b: Real, c: Real, d: Real) -> Result<Plane, ShapeError> {
 
 fn depth(geom: &GeomRecord, x: Real, y: Real, z: Real) -> Outcome<Real> {
     let frame = geom.frame();
-    let depth = geom.shape.borrow().as_ref().and_then(|shape| point_depth(shape, &frame, vec3(x, y, z)));
+    let depth =
+        geom.shape.with(|shape| shape.as_ref().and_then(|shape| point_depth(shape, &frame, vec3(x, y, z))));
     Ok(r(depth.ok_or(Fault::ARGUMENT)?))
 }
 
@@ -98,9 +99,11 @@ fn size(x: Real) -> f64 {
 
 /// Changes a ray's options.
 fn ray_options(geom: GeomId, change: impl FnOnce(&mut Ray)) -> Outcome<()> {
-    if let Some(Shape::Ray(shape)) = &mut *ray(geom)?.shape.borrow_mut() {
-        change(shape);
-    }
+    ray(geom)?.shape.change(|shape| {
+        if let Some(Shape::Ray(shape)) = shape {
+            change(shape);
+        }
+    });
     Ok(())
 }
 

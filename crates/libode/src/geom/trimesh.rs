@@ -171,16 +171,16 @@ impl GeomRecord {
         }
         let Some(data) = self.mesh.data.get().live() else { return };
         if self.mesh.version.replace(data.version.get()) != data.version.get() {
-            *self.shape.borrow_mut() = data.mesh.borrow().clone().map(Shape::from);
+            self.shape.set(data.mesh.borrow().clone().map(Shape::from));
         }
     }
 
     fn trimesh(&self) -> Outcome<TriMesh> {
         self.refresh_mesh();
-        match &*self.shape.borrow() {
+        self.shape.with(|shape| match shape {
             Some(Shape::TriMesh(mesh)) => Ok(mesh.clone()),
             _ => Err(Fault::ARGUMENT),
-        }
+        })
     }
 }
 
