@@ -2,6 +2,7 @@
    library from a frame that owns nothing, so that a handler may leave by longjmp or by a C++ exception.
 
    Handlers are read and written atomically; a program may set them from any thread. */
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -72,3 +73,14 @@ void ferrode_ode_warn(int number, const char *text, int text_length, const char 
     else
         ferrode_ode_message(number, "%.*s", text_length, text);
 }
+
+/* One lock a kind of record. They are the C library's, so that the race checkers of C programs see them. */
+static pthread_mutex_t locks[16] = {
+    PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER,
+    PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER,
+    PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER,
+    PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER,
+};
+
+void ferrode_ode_lock(int kind) { pthread_mutex_lock(&locks[kind]); }
+void ferrode_ode_unlock(int kind) { pthread_mutex_unlock(&locks[kind]); }

@@ -5,11 +5,11 @@
 //! without looking at what it points to. So no handle, however wrong, leads to undefined behaviour.
 
 use core::alloc::Layout;
-use core::cell::Cell;
+use core::cell::{Cell, UnsafeCell};
+use core::ffi::c_int;
 use core::ptr::NonNull;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::collections::VecDeque;
-use std::sync::{Mutex, PoisonError};
 
 /// Size and alignment of a chunk.
 const CHUNK: usize = 1 << 16;
@@ -72,10 +72,34 @@ pub trait Record: Sized + 'static {
 
 /// The records of one kind that can be used again.
 pub struct Pool<T> {
-    free: Mutex<VecDeque<NonNull<T>>>,
+    /// Under the lock of the kind.
+    free: UnsafeCell<VecDeque<NonNull<T>>>,
 }
 
-// SAFETY: the pointers are to memory that lives for ever; the mutex guards the queue.
+unsafe extern "C" {
+    fn ferrode_ode_lock(kind: c_int);
+    fn ferrode_ode_unlock(kind: c_int);
+}
+
+/// A kind's lock, held: the C library's, which the race checkers of C programs understand.
+struct Held(c_int);
+
+impl Held {
+    fn new(kind: usize) -> Self {
+        // SAFETY: a kind is below 16, the number of locks.
+        unsafe { ferrode_ode_lock(kind as c_int) };
+        Self(kind as c_int)
+    }
+}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        // SAFETY: taken in `new` by this thread.
+        unsafe { ferrode_ode_unlock(self.0) };
+    }
+}
+
+// SAFETY: the pointers are to memory that lives for ever; the kind's lock guards the queue.
 unsafe impl<T> Send for Pool<T> {}
 // SAFETY: as above.
 unsafe impl<T> Sync for Pool<T> {}
@@ -88,14 +112,16 @@ impl<T: Record> Default for Pool<T> {
 
 impl<T: Record> Pool<T> {
     pub const fn new() -> Self {
-        Self { free: Mutex::new(VecDeque::new()) }
+        Self { free: UnsafeCell::new(VecDeque::new()) }
     }
 
     /// A blank living record at an address of its own.
     pub fn create(&self) -> &'static T {
-        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let _held = Held::new(T::KIND);
+        // SAFETY: under the kind's lock nobody else uses the queue.
+        let free = unsafe { &mut *self.free.get() };
         if free.len() <= RESERVE {
-            Self::carve_chunk(&mut free);
+            Self::carve_chunk(free);
         }
         let Some(place) = free.pop_front() else { std::alloc::handle_alloc_error(Layout::new::<T>()) };
         // SAFETY: the place is in a chunk of Ts, initialised when carved, aligned, and lives for ever. It was in the
@@ -129,7 +155,9 @@ impl<T: Record> Pool<T> {
     /// Marks a record as dead.
     pub fn destroy(&self, record: &'static T) {
         record.tag().0.set(false);
-        self.free.lock().unwrap_or_else(PoisonError::into_inner).push_back(NonNull::from(record));
+        let _held = Held::new(T::KIND);
+        // SAFETY: under the kind's lock nobody else uses the queue.
+        unsafe { &mut *self.free.get() }.push_back(NonNull::from(record));
     }
 }
 
