@@ -207,24 +207,26 @@ pub fn empty(space: &'static GeomRecord) -> Outcome<()> {
     Ok(())
 }
 
-/// Computes the boxes of what has moved, in spaces within too.
+/// Computes the boxes of what has moved, in spaces within too. Whatever has moved is at the head of the list.
 pub fn clean(space: &'static GeomRecord) -> Outcome<()> {
-    let members = with(space, |contents| contents.members.clone())?;
-    let mut boxes = Vec::new();
-    for (number, member) in members.into_iter().enumerate() {
-        if let Some(member) = member.live().filter(|member| member.dirty.get()) {
-            if member.is_space() {
-                clean(member)?;
-            }
-            boxes.push((number as u32, member.current_aabb()));
-            member.dirty.set(false);
+    let member = |contents: &SpaceData, id: ProxyId| (id, contents.members[id.0 as usize]);
+    let mut next = with(space, |contents| contents.broad().members().first().map(|id| member(contents, id)))?;
+    while let Some((number, id)) = next
+        && let Some(geom) = id.live().filter(|geom| geom.dirty.get())
+    {
+        if geom.is_space() {
+            clean(geom)?;
         }
+        // The program's own function may be asked, so nothing is borrowed meanwhile.
+        let aabb = geom.current_aabb();
+        geom.dirty.set(false);
+        next = with(space, |contents| {
+            contents.table.get_mut(number).aabb = aabb;
+            contents.broad().members().after(&contents.table, number).map(|id| member(contents, id))
+        })?;
     }
     with(space, |contents| {
         let (broad, table, _) = contents.parts();
-        for (number, aabb) in boxes {
-            table.get_mut(ProxyId(number)).aabb = aabb;
-        }
         broad.update(table);
     })
 }
