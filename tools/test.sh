@@ -19,4 +19,11 @@ done
 # Property tests draw the same cases every time here; leave the variable out to explore.
 export PROPTEST_RNG_SEED=${PROPTEST_RNG_SEED:-1}
 
-exec cargo test --workspace --locked --no-fail-fast "$@"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+status=0
+cargo test --workspace --locked --no-fail-fast "$@" 2>&1 | tee "$log" || status=$?
+# Cargo closes with the results of the last of many programs; this is the sum of all.
+awk '/^test result:/ { passed += $4; failed += $6; ignored += $8 }
+     END { printf "\n%d passed, %d failed, %d skipped\n", passed, failed, ignored }' "$log"
+exit "$status"
