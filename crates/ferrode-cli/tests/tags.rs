@@ -258,20 +258,22 @@ fn tags_act_or_are_warned_of() {
     }
 }
 
-/// `<max_vel>` caps the push-out of a deep contact, `<min_depth>` leaves it at a depth.
+/// `<min_depth>` leaves a contact at a depth, `<max_vel>` caps what pushes it out.
 #[test]
 fn contacts_are_corrected_as_their_surfaces_say() {
-    let height = |case: &str, tag: &str| {
-        let to = format!("<kd>1</kd>{tag}");
-        let (table, summary) = run("softness", case, &[("<kd>1</kd>", &to)], &["--time", "0.5"]);
+    let spring = "<kp>2000</kp><kd>200</kd>";
+    let height = |case: &str, tag: &str, time: &str| {
+        let to = format!("{spring}{tag}");
+        let (table, summary) = run("softness", case, &[(spring, &to)], &["--time", time]);
         assert_eq!(summary["warnings"], 0, "{case}");
-        (table, summary["penetration_max_m"].as_f64())
+        table.last("link.spring::body.z[m]")
     };
-    let (plain, _) = height("plain_contact", "");
-    for (case, tag) in
-        [("max_vel", "<max_vel>0.0001</max_vel>"), ("min_depth", "<min_depth>0.003</min_depth>")]
-    {
-        let (table, _) = height(case, tag);
-        assert!(table != plain, "{case} changes the run");
-    }
+    // 20 N on 2000 N/m: 10 mm deep, beyond the depth that is left.
+    close(height("no_min_depth", "", "2"), 0.1 - 0.01, 1e-5);
+    close(height("min_depth", "<min_depth>0.003</min_depth>", "2"), 0.1 - 0.013, 1e-5);
+    // The contact gives (h kp + kd)(c - v), with c capped at 0.05 m/s: too little for 20 N, so the ball sinks at a
+    // steady v = 0.05 - 20 / (0.001 * 2000 + 200).
+    let tag = "<max_vel>0.05</max_vel>";
+    let rate = (height("max_vel_later", tag, "1.5") - height("max_vel", tag, "1")) / 0.5;
+    close(rate, 0.05 - 20.0 / 202.0, 1e-4);
 }

@@ -60,7 +60,8 @@ pub(crate) struct Island {
     place: Vec<u32>,
 }
 
-/// Memory that is kept from step to step. It holds no state: dropping it changes nothing.
+/// Memory that is kept from step to step. Only `Direct`'s part holds something of the past, the guesses that its solves
+/// begin from: among redundant forces a guess can decide, so a clone takes them along and steps to the same bits.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
     islands: Islands,
@@ -71,7 +72,7 @@ pub(crate) struct Scratch {
 
 impl Clone for Scratch {
     fn clone(&self) -> Self {
-        Self::default()
+        Self { direct: self.direct.clone(), ..Self::default() }
     }
 }
 

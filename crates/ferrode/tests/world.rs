@@ -154,22 +154,25 @@ fn a_plane_can_not_ride_on_a_body() -> Result<(), Error> {
 #[test]
 fn a_clone_steps_to_the_same_bits() -> Result<(), Error> {
     fn send<T: Send>(_: &T) {}
-    let mut world = World::new();
-    ground(&mut world)?;
-    for i in 0..20 {
-        let x = 0.3 * f64::from(i % 5);
-        cube(&mut world, Vec3::new(x, 0.1 * f64::from(i), 1.0 + 1.1 * f64::from(i)))?;
-    }
-    run(&mut world, 40)?;
-    let mut copy = world.clone();
-    send(&copy);
-    run(&mut world, 100)?;
-    let copy = std::thread::spawn(move || run(&mut copy, 100).map(|_| copy)).join().expect("no panic")?;
-    for ((ka, a), (kb, b)) in world.bodies().zip(copy.bodies()) {
-        assert_eq!(ka, kb);
-        assert_eq!(a.position(), b.position());
-        assert_eq!(a.quaternion(), b.quaternion());
-        assert_eq!(a.angular_velocity(), b.angular_velocity());
+    for stepper in [Stepper::Quick, Stepper::Direct] {
+        let mut world = World::new();
+        world.stepper = stepper;
+        ground(&mut world)?;
+        for i in 0..20 {
+            let x = 0.3 * f64::from(i % 5);
+            cube(&mut world, Vec3::new(x, 0.1 * f64::from(i), 1.0 + 1.1 * f64::from(i)))?;
+        }
+        run(&mut world, 150)?;
+        let mut copy = world.clone();
+        send(&copy);
+        run(&mut world, 100)?;
+        let copy = std::thread::spawn(move || run(&mut copy, 100).map(|_| copy)).join().expect("no panic")?;
+        for ((ka, a), (kb, b)) in world.bodies().zip(copy.bodies()) {
+            assert_eq!(ka, kb);
+            assert_eq!(a.position(), b.position(), "{stepper:?}");
+            assert_eq!(a.quaternion(), b.quaternion(), "{stepper:?}");
+            assert_eq!(a.angular_velocity(), b.angular_velocity(), "{stepper:?}");
+        }
     }
     Ok(())
 }
