@@ -60,10 +60,10 @@ pub fn from_engine(error: &Error) -> Outcome<()> {
 
 /// Runs a function's work and raises its fault, or that of a panic, when nothing of it is left on the stack.
 #[inline]
-pub fn guard<T>(name: &'static str, work: impl FnOnce() -> Outcome<T>) -> T {
+pub fn guard<T: Default>(name: &'static str, work: impl FnOnce() -> Outcome<T>) -> T {
     match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(value)) => value,
-        Ok(Err(fault)) => raise(name, fault),
+        Ok(Err(fault)) => refuse(name, fault),
         Err(payload) => {
             drop(payload);
             raise(name, Fault::internal("a bug of the library: panic"))
@@ -74,7 +74,7 @@ pub fn guard<T>(name: &'static str, work: impl FnOnce() -> Outcome<T>) -> T {
 /// As [`guard`], for work that calls back into the program: an exception of the program's passes through, which
 /// `catch_unwind` would not allow. A panic ends at the fence.
 #[inline]
-pub fn fence<T>(name: &'static str, work: impl FnOnce() -> Outcome<T>) -> T {
+pub fn fence<T: Default>(name: &'static str, work: impl FnOnce() -> Outcome<T>) -> T {
     struct Fence(&'static str);
     impl Drop for Fence {
         fn drop(&mut self) {
@@ -86,7 +86,14 @@ pub fn fence<T>(name: &'static str, work: impl FnOnce() -> Outcome<T>) -> T {
     let fence = Fence(name);
     let outcome = work();
     core::mem::forget(fence);
-    outcome.unwrap_or_else(|fault| raise(name, fault))
+    outcome.unwrap_or_else(|fault| refuse(name, fault))
+}
+
+/// What a program's mistake leads to: the debug handler; in ODE's release mode ("no-debug") nothing, the call just has no
+/// effect and gives 0 or null.
+#[cold]
+fn refuse<T: Default>(name: &'static str, fault: Fault) -> T {
+    if cfg!(feature = "no-debug") { T::default() } else { raise(name, fault) }
 }
 
 /// Calls the debug handler; does not come back.
@@ -129,6 +136,24 @@ unsafe extern "C-unwind" {
     ) -> !;
     fn ferrode_ode_warn(n: c_int, text: *const c_char, text_len: c_int, name: *const c_char, len: c_int);
 }
+
+/// Declares functions of a part that a feature leaves out: with it they do nothing and give 0 or null.
+macro_rules! export_unless {
+    ($feature:literal; $($(#[$meta:meta])* fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $(-> $ret:ty)? $body:block)+) => {
+        $(
+            $(#[$meta])*
+            #[allow(clippy::missing_safety_doc)]
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C-unwind" fn $name($($arg: $ty),*) $(-> $ret)? {
+                if cfg!(feature = $feature) {
+                    return Default::default();
+                }
+                $crate::fault::guard(stringify!($name), move || Ok($body))
+            }
+        )+
+    };
+}
+pub(crate) use export_unless;
 
 /// Declares exported functions. The body is the work; it may use `?` on an [`Outcome`], and its value is the result.
 ///

@@ -8,7 +8,7 @@
 //! - A function's work gives an outcome; faults are raised by the C shim when the work has returned (`fault`).
 //! - Only records are touched while a callback of the program's runs; the engine's world is lent to it (`stepping`).
 //!
-//! `unsafe` stays in `real`, `slab`, `fault`, `record`, `memory`, `geom::kept` and at calls of the program's functions.
+//! `unsafe` stays in `real`, `numbers`, `slab`, `fault`, `record`, `memory`, `geom::kept` and at calls of the program's functions.
 #![allow(non_snake_case)]
 
 mod body;
@@ -24,6 +24,7 @@ mod mass;
 mod matrix;
 mod memory;
 mod misc;
+mod numbers;
 mod real;
 mod record;
 mod rotation;

@@ -1,7 +1,8 @@
 //! Dense matrices of the program's, row by row with padded rows.
 
 use crate::fault::{Fault, Outcome, export};
-use crate::real::Real;
+use crate::numbers::numbers;
+use crate::real::{self, Real, f};
 use core::ffi::{c_int, c_uint};
 use ferrode_lcp::{LcpError, cholesky, dense, ldlt};
 
@@ -24,50 +25,9 @@ fn done<T>(result: Result<T, LcpError>) -> Outcome<T> {
     result.map_err(|_| Fault::ARGUMENT)
 }
 
-/// Numbers of the program's, to read.
-///
-/// # Safety
-/// `a` is null or good for `n` numbers that nobody changes meanwhile.
-unsafe fn numbers<'a>(a: *const Real, n: usize) -> Outcome<&'a [Real]> {
-    if a.is_null() {
-        return Err(Fault::ARGUMENT);
-    }
-    // SAFETY: not null; the rest is the caller's contract.
-    Ok(unsafe { core::slice::from_raw_parts(a, n) })
-}
-
-/// Numbers of the program's, to change.
-///
-/// # Safety
-/// `a` is null or good for `n` numbers that nobody else uses meanwhile.
-unsafe fn numbers_mut<'a>(a: *mut Real, n: usize) -> Outcome<&'a mut [Real]> {
-    if a.is_null() {
-        return Err(Fault::ARGUMENT);
-    }
-    // SAFETY: not null; the rest is the caller's contract.
-    Ok(unsafe { core::slice::from_raw_parts_mut(a, n) })
-}
-
-/// Names arrays of the program's as slices: `numbers!(a = pointer[length]; mut b = pointer[length])`.
-///
-/// The contract of every exported function that takes an array is that it is null or as long as its dimensions say, and
-/// that arrays that are written overlap no other.
-macro_rules! numbers {
-    ($($name:ident = $pointer:ident[$length:expr]),+; $($out:ident = mut $out_pointer:ident[$out_length:expr]),*) => {
-        // SAFETY: the exported function's contract, above.
-        $(let $name = unsafe { numbers($pointer, $length) }?;)+
-        // SAFETY: as above.
-        $(let $out = unsafe { numbers_mut($out_pointer, $out_length) }?;)*
-    };
-    (; $($out:ident = mut $out_pointer:ident[$out_length:expr]),+) => {
-        // SAFETY: as above.
-        $(let $out = unsafe { numbers_mut($out_pointer, $out_length) }?;)+
-    };
-}
-
 /// The factorisation and the solutions by it, as the plain and the cooperative functions call them.
 pub mod by_pointer {
-    use super::{Outcome, Real, done, extent, ldlt, numbers, numbers_mut};
+    use super::{Outcome, Real, done, extent, ldlt, numbers};
 
     pub fn factor(a: *mut Real, d: *mut Real, n: usize, stride: usize) -> Outcome<()> {
         numbers!(; a = mut a[extent(n, n, stride)], d = mut d[n]);
@@ -104,12 +64,12 @@ export! {
     fn dSetValue(a: *mut Real, n: c_int, value: Real) {
         let n = size(n)?;
         numbers!(; a = mut a[n]);
-        done(dense::set_value(a, n, value))?
+        done(dense::set_value(a, n, f(value)))?
     }
     fn dDot(a: *const Real, b: *const Real, n: c_int) -> Real {
         let n = size(n.max(0))?;
         numbers!(a = a[n], b = b[n];);
-        done(dense::dot(a, b, n))?
+        real::r(done(dense::dot(a, b, n))?)
     }
     fn dMultiply0(a: *mut Real, b: *const Real, c: *const Real, p: c_int, q: c_int, r: c_int) {
         let (p, q, r) = (positive(p)?, positive(q)?, positive(r)?);
@@ -196,7 +156,7 @@ export! {
     fn dMakeRandomVector(a: *mut Real, n: c_int, range: Real) {
         let n = size(n)?;
         numbers!(; a = mut a[n]);
-        crate::misc::with_random(|random| random.fill(a, range))
+        crate::misc::with_random(|random| random.fill(a, f(range)))
     }
     fn dMakeRandomMatrix(a: *mut Real, n: c_int, m: c_int, range: Real) {
         let (n, m) = (size(n)?, size(m)?);
@@ -204,19 +164,19 @@ export! {
         numbers!(; a = mut a[extent(n, m, stride)]);
         crate::misc::with_random(|random| {
             for row in a.chunks_mut(stride.max(1)) {
-                random.fill(&mut row[..m], range);
+                random.fill(&mut row[..m], f(range));
             }
         })
     }
     fn dMaxDifference(a: *const Real, b: *const Real, n: c_int, m: c_int) -> Real {
         let (n, m) = (size(n)?, size(m)?);
         numbers!(a = a[extent(n, m, dense::pad(m))], b = b[extent(n, m, dense::pad(m))];);
-        done(dense::max_difference(a, b, n, m))?
+        real::r(done(dense::max_difference(a, b, n, m))?)
     }
     fn dMaxDifferenceLowerTriangle(a: *const Real, b: *const Real, n: c_int) -> Real {
         let n = size(n)?;
         numbers!(a = a[extent(n, n, dense::pad(n))], b = b[extent(n, n, dense::pad(n))];);
-        done(dense::max_difference_lower_triangle(a, b, n))?
+        real::r(done(dense::max_difference_lower_triangle(a, b, n))?)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The process's random numbers, self-tests, and printing.
 
 use crate::fault::{Fault, export};
-use crate::real::{Real, r};
+use crate::real::{Real, f, r};
 use core::ffi::{c_char, c_int, c_ulong, c_void};
 use core::sync::atomic::{AtomicU32, Ordering};
 use ferrode_lcp::dense::pad;
@@ -70,7 +70,7 @@ export! {
                 // SAFETY: within the n x m matrix that the program gives (the function's contract).
                 let x = unsafe { a.add(i * pad(m) + j).read() };
                 // SAFETY: the program's format takes one number, and its file is open (the function's contract).
-                unsafe { fprintf(file, format, x) };
+                unsafe { fprintf(file, format, f(x)) };
             }
             // SAFETY: a text without conversions.
             unsafe { fprintf(file, c"\n".as_ptr()) };

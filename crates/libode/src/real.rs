@@ -6,7 +6,11 @@ use crate::fault::{Fault, Outcome};
 use ferrode_math::{Mat3, Quat, Vec3};
 
 /// The number type of the C interface, `dReal`.
+#[cfg(not(feature = "single"))]
 pub type Real = f64;
+/// The number type of the C interface, `dReal`.
+#[cfg(feature = "single")]
+pub type Real = f32;
 
 /// Three reals and a padding element, `dVector3`; also `dVector4` and `dQuaternion`.
 pub type Real4 = [Real; 4];

@@ -117,7 +117,12 @@ impl WorldRecord {
     /// A record for a new world.
     pub fn create() -> &'static Self {
         let record = WORLDS.create();
-        record.engine.set(Some(Box::into_raw(Box::new(World::new()))));
+        let mut world = World::new();
+        // ODE's default for float; the engine has that for double.
+        if cfg!(feature = "single") {
+            world.set_cfm(1e-5).ok();
+        }
+        record.engine.set(Some(Box::into_raw(Box::new(world))));
         record
     }
 

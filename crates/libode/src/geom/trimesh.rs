@@ -4,7 +4,7 @@
 //! changed them.
 
 use super::{GeomId, GeomRecord, class};
-use crate::fault::{Fault, Outcome, export};
+use crate::fault::{Fault, Outcome, export, export_unless};
 use crate::mass::{MassPointer, store_checked};
 use crate::real::{In, Out, OutVector, Real, f, vector3};
 use crate::record::{Required, record};
@@ -257,7 +257,7 @@ fn coherent_class(geom_class: c_int) -> Option<usize> {
     usize::try_from(geom_class).ok().filter(|class| *class < 3)
 }
 
-export! {
+export_unless! { "no-trimesh";
     fn dGeomTriMeshDataCreate() -> MeshId { MeshId::of(MeshRecord::pool().create()) }
     fn dGeomTriMeshDataDestroy(data: MeshId) {
         let data = data.get()?;
@@ -429,7 +429,9 @@ export! {
         let made = Mass::trimesh_total_as_ode(f(total), &vertices, &triangles).map_err(|_| Fault::ARGUMENT)?;
         store_checked(mass, &made)?
     }
+}
 
+export! {
     /// Meshes alone answer: whether and how contacts with spheres are merged.
     fn dGeomLowLevelControl(
         geom: GeomId, control_class: c_int, code: c_int, value: *mut c_int, size: Out<c_int>,
