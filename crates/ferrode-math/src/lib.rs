@@ -23,6 +23,7 @@ pub mod random;
 pub mod real;
 pub mod rotation;
 mod scalar;
+pub mod simd;
 mod vector;
 
 pub use aabb::Aabb;
