@@ -4,7 +4,7 @@
 //!
 //! 1. **Shapes and pairs.** A [`Shape`] is a value; [`narrow::collide`] gives the contacts of two shapes at two
 //!    poses, in ODE's conventions: the normal points into the first shape.
-//!    [`manifold`] groups them and knows them again a step later.
+//!    [`manifold`] has our own answer, which a solver can keep from step to step.
 //! 2. **Spaces** ([`space`]): which of many boxes overlap, reported in ODE's order.
 //! 3. **[`Colliders`]**: geoms with keys in a tree of spaces, ready to use.
 //!

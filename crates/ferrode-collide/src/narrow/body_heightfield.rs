@@ -8,7 +8,7 @@ use ferrode_math::Vec3;
 
 impl Heightfield {
     /// A half of the cell at column `x` and row `z`: the one at its lesser or its greater x and z, seen from above.
-    fn facet(&self, x: i64, z: i64, upper: bool) -> Option<Facet> {
+    pub(crate) fn facet(&self, x: i64, z: i64, upper: bool) -> Option<Facet> {
         // The corners, and for each edge the far corner of the triangle beyond.
         let (corners, apexes) = if upper {
             ([(1, 1), (1, 0), (0, 1)], [(2, 0), (0, 0), (0, 2)])

@@ -1,7 +1,7 @@
 //! The contact of any two convex bodies: distance if their cores are apart, least overlap if not.
 
 use super::epa::epa;
-use super::gjk::{Gap, gjk};
+use super::gjk::{Gap, Simplex, gjk};
 use super::support::Body;
 use ferrode_math::Vec3;
 
@@ -22,28 +22,53 @@ pub(crate) fn touch(a: &Body<'_>, b: &Body<'_>) -> Option<Touch> {
     let simplex = match gjk(a, b, margin) {
         Gap::Far => return None,
         Gap::Apart { a: pa, b: pb, between } => {
-            let distance = between.length();
-            if !(distance <= margin) {
-                return None;
-            }
-            let normal = between.normalized()?;
-            let depth = margin - distance;
-            return Some(Touch { normal, depth, a: pa - normal * a.margin, b: pb + normal * b.margin });
+            return apart(a, b, pa, pb, between).filter(|t| t.depth >= 0.0);
         }
         Gap::Overlap(simplex) => simplex,
     };
-    if let Some(d) = epa(a, b, &simplex) {
-        return Some(Touch {
+    Some(overlapping(a, b, &simplex))
+}
+
+/// As [`touch`], and the nearest points of bodies that are apart by no more than `within`: their depth is negative.
+/// Of those further apart, how much more it is at least.
+pub(crate) fn touch_within(a: &Body<'_>, b: &Body<'_>, within: f64) -> Result<Touch, f64> {
+    // A little further is looked at closely, so that those who ask again know how long they need not.
+    let (ra, rb) = (a.reach(), b.reach());
+    let more = 0.25 * ra.min(rb);
+    match gjk(a, b, a.margin + b.margin + within + more) {
+        Gap::Far => Err(more),
+        Gap::Apart { a: pa, b: pb, between } => match apart(a, b, pa, pb, between) {
+            Some(t) if t.depth >= -within => Ok(t),
+            Some(t) => Err(-t.depth - within),
+            None => Err(0.0),
+        },
+        Gap::Overlap(simplex) => Ok(overlapping(a, b, &simplex)),
+    }
+}
+
+/// Bodies whose cores are apart.
+fn apart(a: &Body<'_>, b: &Body<'_>, pa: Vec3, pb: Vec3, between: Vec3) -> Option<Touch> {
+    let distance = between.length();
+    let normal = between.normalized()?;
+    let depth = a.margin + b.margin - distance;
+    Some(Touch { normal, depth, a: pa - normal * a.margin, b: pb + normal * b.margin })
+}
+
+/// Bodies whose cores share a point.
+fn overlapping(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex) -> Touch {
+    let margin = a.margin + b.margin;
+    if let Some(d) = epa(a, b, simplex) {
+        return Touch {
             normal: -d.normal,
             depth: d.depth + margin,
             a: d.a + d.normal * a.margin,
             b: d.b - d.normal * b.margin,
-        });
+        };
     }
     // The difference of the cores is flat: they cross without depth, and part across it.
     let (pa, pb) = simplex.witnesses();
     let normal = flat_normal(a, b);
-    Some(Touch { normal, depth: margin, a: pa - normal * a.margin, b: pb + normal * b.margin })
+    Touch { normal, depth: margin, a: pa - normal * a.margin, b: pb + normal * b.margin }
 }
 
 /// A direction across two cores whose difference is flat, on the side of the first one's centre.

@@ -31,7 +31,7 @@ pub fn heightfield_shape(field: &Heightfield, ff: &Frame, shape: &Shape, fs: &Fr
 }
 
 /// The grid corners under a box, both ends included.
-pub(super) struct Zone {
+pub(crate) struct Zone {
     pub x: [i64; 2],
     pub z: [i64; 2],
     pub low: f64,

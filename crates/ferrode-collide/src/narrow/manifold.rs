@@ -23,11 +23,13 @@ pub(crate) struct Feature {
     pub count: usize,
     /// Outward unit normal of a face; of an edge or corner there is none.
     pub normal: Option<Vec3>,
+    /// Which of the body's features it is, from 0: the number of a face, or what tells ends and sides apart.
+    pub number: u32,
 }
 
 impl Feature {
     fn corner(p: Vec3) -> Self {
-        Self { points: [p; FEATURE], count: 1, normal: None }
+        Self { points: [p; FEATURE], count: 1, normal: None, number: 0 }
     }
 
     fn edge(p: Vec3, q: Vec3) -> Self {
@@ -65,6 +67,7 @@ impl Feature {
                 let mut f = Self::corner(Vec3::ZERO);
                 f.count = 4;
                 f.normal = Some(body.axis(i) * sign);
+                f.number = 2 * i as u32 + u32::from(sign < 0.0);
                 // Counter-clockwise about the outward normal.
                 for (m, (sj, sk)) in
                     [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].into_iter().enumerate()
@@ -100,6 +103,7 @@ impl Feature {
                 let mut f = Self::corner(Vec3::ZERO);
                 f.count = corners.len().min(FEATURE);
                 f.normal = Some(body.rotation * hull.face_plane(i).0);
+                f.number = i as u32;
                 for (k, p) in f.points[..f.count].iter_mut().enumerate() {
                     *p = body.place(hull.points()[corners[k * corners.len() / f.count] as usize]);
                 }

@@ -3,8 +3,8 @@
 use super::convex::{Touch, touch};
 use super::manifold::{add_face_contacts, add_manifold};
 use super::support::Body;
+use crate::Contacts;
 use crate::shape::Neighbour;
-use crate::{Contacts, GeomContact};
 use ferrode_math::{Aabb, Vec3};
 
 /// A triangle with its front, and what lies beyond its edges.
@@ -48,7 +48,7 @@ impl Facet {
 }
 
 /// Cosines nearer than this are one direction.
-const SAME: f64 = 1e-6;
+pub(crate) const SAME: f64 = 1e-6;
 
 /// Adds the contacts of a body with a triangle, normals into the body, if the body's middle is before the triangle.
 ///
@@ -76,7 +76,7 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     let mut kept = first;
     for i in first..out.len() {
         let mut c = out.added()[i];
-        if !nearer_elsewhere(body, facet, middle, &c) {
+        if !nearer_elsewhere(body, facet, middle, c.point.normal, c.point.depth) {
             c.side2 = facet.index;
             out.added()[kept] = c;
             kept += 1;
@@ -107,21 +107,27 @@ fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Co
 
 /// Whether the body leaves sooner past the triangle beyond a convex edge, which also has its middle before it: then a
 /// contact with this one's face would push it the long way.
-fn nearer_elsewhere(body: &Body<'_>, facet: &Facet, middle: Vec3, c: &GeomContact) -> bool {
-    if c.point.normal.dot(facet.normal) < 1.0 - SAME {
+pub(crate) fn nearer_elsewhere(
+    body: &Body<'_>,
+    facet: &Facet,
+    middle: Vec3,
+    normal: Vec3,
+    found: f64,
+) -> bool {
+    if normal.dot(facet.normal) < 1.0 - SAME {
         return false;
     }
     (0..3).any(|e| match facet.neighbours[e] {
         Neighbour::Convex(other) if other.dot(middle - facet.corners[e]) > 0.0 => {
             let depth = other.dot(facet.corners[e] - body.support(-other)) + body.margin;
-            depth >= 0.0 && depth < c.point.depth * (1.0 - 1e-6)
+            depth >= 0.0 && depth < found * (1.0 - 1e-6)
         }
         _ => false,
     })
 }
 
 /// Whether a touch is at an edge that the surface goes on beyond without a bend outward.
-fn at_inner_edge(facet: &Facet, t: &Touch) -> bool {
+pub(crate) fn at_inner_edge(facet: &Facet, t: &Touch) -> bool {
     let scale = facet.scale();
     (0..3).any(|e| {
         facet.neighbours[e] == Neighbour::FlatOrConcave
@@ -130,7 +136,7 @@ fn at_inner_edge(facet: &Facet, t: &Touch) -> bool {
 }
 
 /// Whether the normal of a touch is one that the surface has at that point.
-fn allowed(facet: &Facet, t: &Touch) -> bool {
+pub(crate) fn allowed(facet: &Facet, t: &Touch) -> bool {
     let along = t.normal.dot(facet.normal);
     if along < -SAME {
         return false;
