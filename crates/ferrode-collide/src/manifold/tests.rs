@@ -289,7 +289,7 @@ fn refresh_equals_a_fresh_search() {
                     compared += 1;
                     // A place where an edge is cut moves along the edge: that shift, at most, comes on top.
                     let shifts = ((p.anchor_a - q.anchor_a).length(), (p.anchor_b - q.anchor_b).length());
-                    let is_corner = shifts.0.min(shifts.1) < 1e-7;
+                    let is_corner = (if m.normal_of_a { shifts.1 } else { shifts.0 }) < 1e-7;
                     corners += usize::from(is_corner);
                     let shift = if is_corner { 0.0 } else { shifts.0.max(shifts.1) };
                     assert!(
