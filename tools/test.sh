@@ -3,11 +3,12 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# The live comparison runs the same scenes on an installed libode; it needs its headers and a C compiler.
-if command -v apt-get >/dev/null && ! [ -e /usr/include/ode/ode.h ]; then
+# The live comparison runs the same scenes on an installed libode; it needs its headers and C compilers. The test of the
+# installer builds a CMake project.
+if command -v apt-get >/dev/null && ! { [ -e /usr/include/ode/ode.h ] && command -v cmake g++ pkg-config >/dev/null; }; then
   if [ "$(id -u)" = 0 ]; then as_root=(); else as_root=(sudo -n); fi
-  "${as_root[@]}" apt-get update -qq && "${as_root[@]}" apt-get install -y -qq libode-dev gcc >/dev/null ||
-    echo "note: libode-dev could not be installed; the live comparison with it will be skipped"
+  "${as_root[@]}" apt-get update -qq && "${as_root[@]}" apt-get install -y -qq libode-dev gcc g++ cmake make pkg-config >/dev/null ||
+    echo "note: libode-dev and compilers could not be installed; what needs them will be skipped"
 fi
 
 # Extra worlds and recorded figures lie beside the checkout where the project is developed.

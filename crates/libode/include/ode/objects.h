@@ -344,6 +344,7 @@ ODE_API void dJointSetPUAxis2(dJointID joint, dReal x, dReal y, dReal z);
 ODE_API void dJointSetPUAxis3(dJointID joint, dReal x, dReal y, dReal z);
 ODE_API void dJointSetPUAxisP(dJointID joint, dReal x, dReal y, dReal z);
 ODE_API void dJointSetPUParam(dJointID joint, int parameter, dReal value);
+ODE_API void dJointAddPUTorques(dJointID joint, dReal torque1, dReal torque2);
 
 /* A slider that may turn about its axis. */
 ODE_API void dJointAddPistonForce(dJointID joint, dReal force);
