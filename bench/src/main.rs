@@ -17,6 +17,7 @@ mod engine;
 mod ode;
 mod report;
 mod scene;
+mod stamp;
 
 use engine::{ContactLine, Engine, Ferrode, Method};
 use ode::Ode;

@@ -74,7 +74,11 @@ const DT: f64 = 1.0 / 60.0;
 fn broad(count: usize, speed: f64, steps: usize) -> Result<String, Box<dyn Error>> {
     let (mut bodies, side) = scene::crowd(count, 4.0, speed);
     let ours = [("ferrode bvh", SpaceKind::Bvh), ("ferrode hash", SpaceKind::HASH)];
-    let theirs = [("libode sap", ode::Kind::Sap), ("libode hash", ode::Kind::Hash), ("libode quadtree", ode::Kind::Quadtree)];
+    let theirs = [
+        ("libode sap", ode::Kind::Sap),
+        ("libode hash", ode::Kind::Hash),
+        ("libode quadtree", ode::Kind::Quadtree),
+    ];
     let mut a: Vec<_> = ours.iter().map(|o| Ours::new(o.1, &bodies)).collect::<Result<_, _>>()?;
     let mut b: Vec<_> = theirs.iter().map(|t| ode::Space::new(t.1, &bodies, side)).collect();
     let mut r64 = rapier::double::Scene::new(&bodies);
@@ -116,9 +120,11 @@ fn broad(count: usize, speed: f64, steps: usize) -> Result<String, Box<dyn Error
     }
     counts[n - 2] = r64.contacts();
     counts[n - 1] = r32.contacts();
-    let mut text = format!("{count} geoms, every second moves at up to {speed} m/s, dt 1/60 s; milliseconds\n\n");
+    let mut text =
+        format!("{count} geoms, every second moves at up to {speed} m/s, dt 1/60 s; milliseconds\n\n");
     text += "| engine | moving geoms | broad phase | broad and narrow | whole | pairs | contacts |\n|---|---|---|---|---|---|---|\n";
-    let names = ours.iter().map(|o| o.0).chain(theirs.iter().map(|t| t.0)).chain(["rapier f64", "rapier f32"]);
+    let names =
+        ours.iter().map(|o| o.0).chain(theirs.iter().map(|t| t.0)).chain(["rapier f64", "rapier f32"]);
     for (k, name) in names.enumerate() {
         let [m, b, w] = &mut times[k];
         let ms = |t: &mut Vec<f64>| median(t) * 1e3;
@@ -185,7 +191,11 @@ fn rays(count: usize) -> Result<String, Box<dyn Error>> {
         &format!("{count} rays of 100 m among 10,000 boxes in a cube of 100 m"),
         &scene::rays(count),
         &mut [
-            ("ferrode", false, Box::new(|o, d| queries.ray_cast(o, d, length, |_, _| true).map(|h| h.distance))),
+            (
+                "ferrode",
+                false,
+                Box::new(|o, d| queries.ray_cast(o, d, length, |_, _| true).map(|h| h.distance)),
+            ),
             ("parry f64", false, Box::new(|o, d| p64.cast(o, d, length))),
             ("parry f32", false, Box::new(|o, d| p32.cast(o, d, length))),
             ("rapier f64", false, Box::new(|o, d| r64.cast(o, d, length))),
@@ -203,7 +213,9 @@ fn rays(count: usize) -> Result<String, Box<dyn Error>> {
         (rapier::double::Mesh::new(&vertices, &triangles), rapier::single::Mesh::new(&vertices, &triangles));
     let mut theirs = ode::Space::mesh(vertices.leak(), triangles.leak());
     text += &ask(
-        &format!("{count} rays onto hills of {count_of} triangles; ferrode's tree takes {tree:.1} bytes a triangle"),
+        &format!(
+            "{count} rays onto hills of {count_of} triangles; ferrode's tree takes {tree:.1} bytes a triangle"
+        ),
         &scene::rays_down(count),
         &mut [
             (

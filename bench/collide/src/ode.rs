@@ -93,7 +93,15 @@ extern "C" fn count(data: *mut c_void, a: Id, b: Id) {
     let count = unsafe { &mut *data.cast::<Count>() };
     count.pairs += 1;
     if count.narrow {
-        let mut list = [const { ContactGeom { pos: [0.0; 4], normal: [0.0; 4], depth: 0.0, geoms: [core::ptr::null_mut(); 2], sides: [0; 2] } }; 8];
+        let mut list = [const {
+            ContactGeom {
+                pos: [0.0; 4],
+                normal: [0.0; 4],
+                depth: 0.0,
+                geoms: [core::ptr::null_mut(); 2],
+                sides: [0; 2],
+            }
+        }; 8];
         // SAFETY: room for eight records of the size given.
         count.contacts += unsafe { dCollide(a, b, 8, list.as_mut_ptr(), 96) } as usize;
     }
@@ -106,7 +114,13 @@ struct Nearest {
 extern "C" fn nearest(data: *mut c_void, a: Id, b: Id) {
     // SAFETY: as in `count`.
     let nearest = unsafe { &mut *data.cast::<Nearest>() };
-    let mut hit = ContactGeom { pos: [0.0; 4], normal: [0.0; 4], depth: 0.0, geoms: [core::ptr::null_mut(); 2], sides: [0; 2] };
+    let mut hit = ContactGeom {
+        pos: [0.0; 4],
+        normal: [0.0; 4],
+        depth: 0.0,
+        geoms: [core::ptr::null_mut(); 2],
+        sides: [0; 2],
+    };
     // SAFETY: room for one record.
     if unsafe { dCollide(a, b, 1, &mut hit, 96) } > 0 && hit.depth < nearest.depth {
         nearest.depth = hit.depth;

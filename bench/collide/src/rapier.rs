@@ -44,12 +44,8 @@ macro_rules! engine {
                                 }
                             };
                             let q = b.rotation;
-                            let rotation = Rotation::from_xyzw(
-                                q.x as Real,
-                                q.y as Real,
-                                q.z as Real,
-                                q.w as Real,
-                            );
+                            let rotation =
+                                Rotation::from_xyzw(q.x as Real, q.y as Real, q.z as Real, q.w as Real);
                             colliders.insert(
                                 builder
                                     .position(Pose::from_parts(vector(b.position), rotation.normalize()))
@@ -109,7 +105,9 @@ macro_rules! engine {
                         QueryFilter::default(),
                     );
                     let ray = Ray::new(vector(from), vector(direction));
-                    query.cast_ray_and_get_normal(&ray, length as Real, false).map(|h| f64::from(h.1.time_of_impact))
+                    query
+                        .cast_ray_and_get_normal(&ray, length as Real, false)
+                        .map(|h| f64::from(h.1.time_of_impact))
                 }
             }
 
@@ -126,7 +124,9 @@ macro_rules! engine {
                     let shapes: Vec<_> = scene
                         .handles
                         .iter()
-                        .map(|h| (scene.colliders[*h].shared_shape().clone(), *scene.colliders[*h].position()))
+                        .map(|h| {
+                            (scene.colliders[*h].shared_shape().clone(), *scene.colliders[*h].position())
+                        })
                         .collect();
                     let boxes: Vec<Aabb> = shapes.iter().map(|(s, p)| s.compute_aabb(p)).collect();
                     let bvh = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
