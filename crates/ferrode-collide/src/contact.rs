@@ -20,6 +20,13 @@ impl GeomContact {
         Self { point: ContactPoint { position, normal, depth }, side1: -1, side2: -1 }
     }
 
+    /// Whether all numbers are finite; lifts a depth below zero to zero.
+    fn lift_if_sound(&mut self) -> bool {
+        let p = &mut self.point;
+        p.depth = if p.depth < 0.0 { 0.0 } else { p.depth };
+        p.depth.is_finite() && p.normal.is_finite() && p.position.is_finite()
+    }
+
     /// The same contact seen from the other geom.
     #[inline]
     pub fn swapped(self) -> Self {
@@ -65,19 +72,24 @@ pub struct Contacts<'a> {
     list: &'a mut Vec<GeomContact>,
     start: usize,
     options: CollideOptions,
+    /// What is added is turned round: it is that of the shapes in the other order.
+    turned: bool,
+    /// Contacts may have been changed after they were added.
+    edited: bool,
 }
 
 impl<'a> Contacts<'a> {
     /// Adds to the end of `list`; what is already there stays as it is.
     pub fn new(list: &'a mut Vec<GeomContact>, options: CollideOptions) -> Self {
         let start = list.len();
-        Self { list, start, options }
+        Self { list, start, options, turned: false, edited: false }
     }
 
     /// Room for any number of contacts at the end of the list, to choose from afterwards.
     pub(crate) fn all(&mut self) -> Contacts<'_> {
         let options = CollideOptions { max_contacts: u16::MAX, ..self.options };
-        Contacts { start: self.list.len(), list: self.list, options }
+        self.edited = true;
+        Contacts { start: self.list.len(), list: self.list, options, turned: self.turned, edited: true }
     }
 
     /// What was asked for.
@@ -110,22 +122,62 @@ impl<'a> Contacts<'a> {
         self.len() >= self.capacity()
     }
 
-    /// Adds a contact of shapes without parts, unless the list is full.
-    #[inline]
+    /// Adds a contact of shapes without parts, unless the list is full. One that is not made of finite numbers, which only
+    /// poses that are none, or nearly overflow, can cause, is left out; a depth that rounding put below zero counts as
+    /// zero.
+    // Always inline: the numbers are tested and turned round in registers. Reading back what was just written in other
+    // portions would make the processor wait, for longer than the contact took to find.
+    #[inline(always)]
     pub fn push(&mut self, position: Vec3, normal: Vec3, depth: f64) {
-        self.push_contact(GeomContact::new(position, normal, depth));
+        if self.is_full() {
+            return;
+        }
+        let (p, n) = (position, normal);
+        let sum = (p.x + p.y) + (p.z + n.x) + ((n.y + n.z) + depth);
+        if sum.abs() < f64::INFINITY && depth >= 0.0 {
+            let sign = if self.turned { -1.0 } else { 1.0 };
+            self.list.push(GeomContact::new(position, normal * sign, depth));
+        } else {
+            self.push_odd(GeomContact::new(position, normal, depth));
+        }
     }
 
-    /// Adds a contact unless the list is full.
+    /// As [`push`](Self::push), for shapes with parts.
     #[inline]
     pub fn push_contact(&mut self, contact: GeomContact) {
         if !self.is_full() {
-            self.list.push(contact);
+            self.push_odd(contact);
         }
+    }
+
+    #[inline(never)]
+    fn push_odd(&mut self, mut contact: GeomContact) {
+        if contact.lift_if_sound() {
+            self.list.push(if self.turned { contact.swapped() } else { contact });
+        }
+    }
+
+    /// Drops contacts that changes after they were added left without finite numbers.
+    #[inline]
+    pub(crate) fn finish(&mut self) {
+        if self.edited && !self.list[self.start..].iter_mut().all(GeomContact::lift_if_sound) {
+            let added = self.list.split_off(self.start);
+            self.list.extend(added.into_iter().filter(|c| c.clone().lift_if_sound()));
+        }
+    }
+
+    /// Runs `find` for the shapes in the other order and turns round what it adds, on the way into the list: reading
+    /// back what was just written would wait for the memory. `find` must not look at normals that it added.
+    #[inline(always)]
+    pub(crate) fn in_other_order(&mut self, find: impl FnOnce(&mut Self)) {
+        self.turned = !self.turned;
+        find(self);
+        self.turned = !self.turned;
     }
 
     /// The contacts added so far.
     pub fn added(&mut self) -> &mut [GeomContact] {
+        self.edited = true;
         &mut self.list[self.start..]
     }
 

@@ -1,4 +1,5 @@
 use super::convex::touch;
+use super::dispatch::apart;
 use super::manifold::add_manifold;
 use super::support::Body;
 use crate::{Contacts, Frame, Shape};
@@ -10,9 +11,11 @@ use ferrode_math::Vec3;
 /// Shapes of unlike kinds have the same contacts in either order, but for the sign of the normal. Other shapes have none
 /// here.
 pub fn convex_bodies(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    if apart(fa, fb, a.reach() + b.reach()) {
+        return;
+    }
     if (a.kind() as usize) > b.kind() as usize {
-        in_order(b, fb, a, fa, out);
-        out.swap();
+        out.in_other_order(|out| in_order(b, fb, a, fa, out));
     } else {
         in_order(a, fa, b, fb, out);
     }

@@ -1,3 +1,4 @@
+use super::unit::{unit, unit_or};
 use crate::{Contacts, Cylinder, Frame, Plane};
 use ferrode_math::Vec3;
 
@@ -9,12 +10,16 @@ pub fn cylinder_plane(cylinder: &Cylinder, fc: &Frame, plane: &Plane, _: &Frame,
     let (radius, half) = (cylinder.radius(), 0.5 * cylinder.length());
     let u = fc.axis(2);
     let n = plane.normal();
+    // A hair more, so that rounding here never decides.
+    if plane.depth(fc.position) < -cylinder.reach() * (1.0 + 1e-6) {
+        return;
+    }
     let cosine = u.dot(n);
     if 1.0 - cosine.abs() < STANDING {
         let disc = fc.position + if cosine < 0.0 { u * half } else { u * -half };
         // Radii from a fixed direction of the world: they do not turn with the cylinder.
         let helper = if u.x.abs() > STANDING { Vec3::Y } else { Vec3::X };
-        let b = u.cross(helper).normalized_or(Vec3::Z);
+        let b = unit_or(u.cross(helper), Vec3::Z);
         let (a, b) = (u.cross(b), -b);
         for radial in [a, -a, b, -b] {
             let p = disc + radial * radius;
@@ -25,7 +30,7 @@ pub fn cylinder_plane(cylinder: &Cylinder, fc: &Frame, plane: &Plane, _: &Frame,
         }
         return;
     }
-    let Some(down) = (u * cosine - n).normalized() else { return };
+    let Some(down) = unit(u * cosine - n) else { return };
     for end in [-half, half] {
         let p = fc.position + u * end + down * radius;
         let depth = plane.depth(p);

@@ -1,3 +1,4 @@
+use super::unit::{unit, unit_or};
 use crate::{Contacts, Cylinder, Frame, Sphere};
 
 /// How far the axis must lie outside the ball for the contact to be on the ball's surface.
@@ -11,13 +12,20 @@ pub fn cylinder_sphere(cylinder: &Cylinder, fc: &Frame, sphere: &Sphere, fs: &Fr
     let relative = center - fc.position;
     // Height over the bottom disc, and distance from the axis.
     let height = u.dot(relative) + 0.5 * length;
+    if height < -r || height > length + r {
+        return;
+    }
     let radial = relative - u * u.dot(relative);
-    let distance = radial.length();
+    let square = radial.length_squared();
+    if square > (radius + r) * (radius + r) * (1.0 + 1e-9) {
+        return;
+    }
+    let distance = square.sqrt();
     if height < -r || height > length + r || distance > radius + r || !distance.is_finite() {
         return;
     }
     // A centre on the axis is as near to one side as to any other.
-    let outward = radial.normalized().unwrap_or_else(|| fc.axis(0));
+    let outward = unit(radial).unwrap_or_else(|| fc.axis(0));
     let within = height >= 0.0 && height <= length;
     if distance > radius && !within {
         let end = if height < 0.0 { -0.5 * length } else { 0.5 * length };
@@ -25,7 +33,7 @@ pub fn cylinder_sphere(cylinder: &Cylinder, fc: &Frame, sphere: &Sphere, fs: &Fr
         let line = rim - center;
         let depth = r - line.length();
         if depth >= 0.0 {
-            out.push(rim, line.normalized_or(-outward), depth);
+            out.push(rim, unit_or(line, -outward), depth);
         }
         return;
     }

@@ -6,6 +6,43 @@ use ferrode_math::Pose;
 
 type Collider = fn(&Shape, &Frame, &Shape, &Frame, &mut Contacts<'_>);
 
+/// Whether bodies that reach `reach` between them are further apart than that. A hair more, so that rounding here never
+/// decides what touches.
+#[inline(always)]
+pub(super) fn apart(fa: &Frame, fb: &Frame, reach: f64) -> bool {
+    (fa.position - fb.position).length_squared() > reach * reach * (1.0 + 1e-9)
+}
+
+/// A table entry: as `pair!`, for bodies; does not look at those whose bounding balls are apart.
+macro_rules! near {
+    ($a:ident, $b:ident, $f:ident) => {{
+        fn run(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+            if let (Shape::$a(a), Shape::$b(b)) = (a, b)
+                && !apart(fa, fb, a.reach() + b.reach())
+            {
+                $f(a, fa, b, fb, out);
+            }
+        }
+        Some(run as Collider)
+    }};
+}
+
+/// A table entry: as `turn!`, for bodies; does not look at those whose bounding balls are apart.
+macro_rules! turn_near {
+    ($b:ident, $a:ident, $f:ident) => {{
+        fn run(b: &Shape, fb: &Frame, a: &Shape, fa: &Frame, out: &mut Contacts<'_>) {
+            if let (Shape::$a(a), Shape::$b(b)) = (a, b)
+                && !apart(fa, fb, a.reach() + b.reach())
+            {
+                out.in_other_order(|out| {
+                    $f(a, fa, b, fb, out);
+                });
+            }
+        }
+        Some(run as Collider)
+    }};
+}
+
 /// A table entry: calls `$f` with the two shapes unpacked.
 macro_rules! pair {
     ($a:ident, $b:ident, $f:ident) => {{
@@ -25,6 +62,20 @@ macro_rules! swap {
             if let (Shape::$a(a), Shape::$b(b)) = (a, b) {
                 $f(a, fa, b, fb, out);
                 out.swap();
+            }
+        }
+        Some(run as Collider)
+    }};
+}
+
+/// As `swap!`, for functions that only add contacts and never look at them: these are turned round as they are added.
+macro_rules! turn {
+    ($b:ident, $a:ident, $f:ident) => {{
+        fn run(b: &Shape, fb: &Frame, a: &Shape, fa: &Frame, out: &mut Contacts<'_>) {
+            if let (Shape::$a(a), Shape::$b(b)) = (a, b) {
+                out.in_other_order(|out| {
+                    $f(a, fa, b, fb, out);
+                });
             }
         }
         Some(run as Collider)
@@ -80,15 +131,15 @@ const KINDS: usize = 11;
 
 /// Row: the first shape; column: the second.
 #[rustfmt::skip]
-static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
+const PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     // Sphere
     [
         pair!(Sphere, Sphere, sphere_sphere),               // Sphere
-        pair!(Sphere, Cuboid, sphere_cuboid),               // Cuboid
-        swap!(Sphere, Capsule, capsule_sphere),             // Capsule
-        swap!(Sphere, Cylinder, cylinder_sphere),           // Cylinder
+        near!(Sphere, Cuboid, sphere_cuboid),               // Cuboid
+        turn_near!(Sphere, Capsule, capsule_sphere),             // Capsule
+        turn_near!(Sphere, Cylinder, cylinder_sphere),           // Cylinder
         pair!(Sphere, Plane, sphere_plane),                 // Plane
-        swap!(Sphere, Ray, ray_sphere),                     // Ray
+        turn!(Sphere, Ray, ray_sphere),                     // Ray
         BODIES,                                             // Convex
         pair!(Sphere, TriMesh, sphere_trimesh),             // TriMesh
         BODIES,                                             // Ellipsoid
@@ -97,12 +148,12 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     ],
     // Cuboid
     [
-        swap!(Cuboid, Sphere, sphere_cuboid),               // Sphere
-        pair!(Cuboid, Cuboid, cuboid_cuboid),               // Cuboid
-        swap!(Cuboid, Capsule, capsule_cuboid),             // Capsule
-        swap!(Cuboid, Cylinder, cylinder_cuboid),           // Cylinder
+        turn_near!(Cuboid, Sphere, sphere_cuboid),               // Sphere
+        near!(Cuboid, Cuboid, cuboid_cuboid),               // Cuboid
+        turn_near!(Cuboid, Capsule, capsule_cuboid),             // Capsule
+        turn_near!(Cuboid, Cylinder, cylinder_cuboid),           // Cylinder
         pair!(Cuboid, Plane, cuboid_plane),                 // Plane
-        swap!(Cuboid, Ray, ray_cuboid),                     // Ray
+        turn!(Cuboid, Ray, ray_cuboid),                     // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
@@ -111,12 +162,12 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     ],
     // Capsule
     [
-        pair!(Capsule, Sphere, capsule_sphere),             // Sphere
-        pair!(Capsule, Cuboid, capsule_cuboid),             // Cuboid
-        pair!(Capsule, Capsule, capsule_capsule),           // Capsule
-        pair!(Capsule, Cylinder, capsule_cylinder),         // Cylinder
+        near!(Capsule, Sphere, capsule_sphere),             // Sphere
+        near!(Capsule, Cuboid, capsule_cuboid),             // Cuboid
+        near!(Capsule, Capsule, capsule_capsule),           // Capsule
+        near!(Capsule, Cylinder, capsule_cylinder),         // Cylinder
         pair!(Capsule, Plane, capsule_plane),               // Plane
-        swap!(Capsule, Ray, ray_capsule),                   // Ray
+        turn!(Capsule, Ray, ray_capsule),                   // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
@@ -125,12 +176,12 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     ],
     // Cylinder
     [
-        pair!(Cylinder, Sphere, cylinder_sphere),           // Sphere
-        pair!(Cylinder, Cuboid, cylinder_cuboid),           // Cuboid
-        swap!(Cylinder, Capsule, capsule_cylinder),         // Capsule
-        pair!(Cylinder, Cylinder, cylinder_cylinder),       // Cylinder
+        near!(Cylinder, Sphere, cylinder_sphere),           // Sphere
+        near!(Cylinder, Cuboid, cylinder_cuboid),           // Cuboid
+        turn_near!(Cylinder, Capsule, capsule_cylinder),         // Capsule
+        near!(Cylinder, Cylinder, cylinder_cylinder),       // Cylinder
         pair!(Cylinder, Plane, cylinder_plane),             // Plane
-        swap!(Cylinder, Ray, ray_cylinder),                 // Ray
+        turn!(Cylinder, Ray, ray_cylinder),                 // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
@@ -139,13 +190,13 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     ],
     // Plane
     [
-        swap!(Plane, Sphere, sphere_plane),                 // Sphere
-        swap!(Plane, Cuboid, cuboid_plane),                 // Cuboid
-        swap!(Plane, Capsule, capsule_plane),               // Capsule
-        swap!(Plane, Cylinder, cylinder_plane),             // Cylinder
+        turn!(Plane, Sphere, sphere_plane),                 // Sphere
+        turn!(Plane, Cuboid, cuboid_plane),                 // Cuboid
+        turn!(Plane, Capsule, capsule_plane),               // Capsule
+        turn!(Plane, Cylinder, cylinder_plane),             // Cylinder
         NONE,                                               // Plane
-        swap!(Plane, Ray, ray_plane),                       // Ray
-        swap!(Plane, Convex, convex_plane),                 // Convex
+        turn!(Plane, Ray, ray_plane),                       // Ray
+        turn!(Plane, Convex, convex_plane),                 // Convex
         swap!(Plane, TriMesh, trimesh_plane),               // TriMesh
         PLANE_SWAPPED,                                      // Ellipsoid
         PLANE_SWAPPED,                                      // Cone
@@ -172,7 +223,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         BODIES,                                             // Capsule
         BODIES,                                             // Cylinder
         pair!(Convex, Plane, convex_plane),                 // Plane
-        swap!(Convex, Ray, ray_convex),                     // Ray
+        turn!(Convex, Ray, ray_convex),                     // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
@@ -200,7 +251,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         BODIES,                                             // Capsule
         BODIES,                                             // Cylinder
         PLANE,                                              // Plane
-        swap!(Ellipsoid, Ray, ray_ellipsoid),               // Ray
+        turn!(Ellipsoid, Ray, ray_ellipsoid),               // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
@@ -214,7 +265,7 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         BODIES,                                             // Capsule
         BODIES,                                             // Cylinder
         PLANE,                                              // Plane
-        swap!(Cone, Ray, ray_cone),                         // Ray
+        turn!(Cone, Ray, ray_cone),                         // Ray
         BODIES,                                             // Convex
         MESH,                                               // TriMesh
         BODIES,                                             // Ellipsoid
@@ -237,11 +288,27 @@ static PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     ],
 ];
 
-fn pair(a: ShapeKind, b: ShapeKind) -> Option<Collider> {
-    if a == ShapeKind::Custom || b == ShapeKind::Custom {
-        return Some(run_custom);
+/// The matrix with a row and a column for custom shapes, in rows of a power of two: it is looked up at every call.
+static TABLE: [[Option<Collider>; 16]; 16] = {
+    let mut table = [[NONE; 16]; 16];
+    let mut i = 0;
+    while i <= KINDS {
+        let mut j = 0;
+        while j <= KINDS {
+            table[i][j] =
+                if i == KINDS || j == KINDS { Some(run_custom as Collider) } else { PAIRS[i][j] };
+            j += 1;
+        }
+        i += 1;
     }
-    PAIRS[a as usize][b as usize]
+    table
+};
+
+const _: () = assert!(ShapeKind::Custom as usize == KINDS);
+
+#[inline(always)]
+fn pair(a: ShapeKind, b: ShapeKind) -> Option<Collider> {
+    TABLE[a as usize & 15][b as usize & 15]
 }
 
 /// The first custom shape is asked, then the second.
@@ -256,23 +323,6 @@ fn run_custom(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'
     {
         out.swap();
     }
-}
-
-/// Drops contacts that are no numbers, which only poses that are none, or nearly overflow, can cause; and lifts depths
-/// that rounding put below zero.
-fn keep_sound(contacts: &mut Contacts<'_>) {
-    let list = contacts.added();
-    let mut kept = 0;
-    for i in 0..list.len() {
-        let mut c = list[i];
-        let p = &mut c.point;
-        if p.depth.is_finite() && p.normal.is_finite() && p.position.is_finite() {
-            p.depth = p.depth.max(0.0);
-            list[kept] = c;
-            kept += 1;
-        }
-    }
-    contacts.truncate(kept);
 }
 
 /// Whether shapes of these kinds can touch at all: two planes, or two rays, cannot; of custom shapes it is not known.
@@ -305,7 +355,7 @@ pub fn collide_frames(
     }
     let mut contacts = Contacts::new(out, options);
     collider(a.0, a.1, b.0, b.1, &mut contacts);
-    keep_sound(&mut contacts);
+    contacts.finish();
     contacts.len()
 }
 

@@ -96,7 +96,7 @@ impl Feature {
                     Self::corner(body.support(d))
                 }
             }
-            Core::Hull(hull, _) => {
+            Core::Hull(hull) => {
                 let l = body.rotation.transpose_mul(d);
                 let i = hull.face_along(l);
                 let corners = hull.face(i);

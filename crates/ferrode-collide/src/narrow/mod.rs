@@ -50,6 +50,7 @@ pub(crate) mod support;
 pub(crate) mod triangle;
 mod trimesh_plane;
 mod trimesh_trimesh;
+mod unit;
 
 pub use bodies::convex_bodies;
 pub use body_heightfield::body_heightfield;

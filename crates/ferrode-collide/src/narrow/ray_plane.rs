@@ -8,6 +8,10 @@ pub fn ray_plane(ray: &Ray, fr: &Frame, plane: &Plane, _: &Frame, out: &mut Cont
         return;
     }
     let depth = plane.depth(o);
+    // Before the division: most miss.
+    if (depth < 0.0) != (slope < 0.0) && depth != 0.0 || depth.abs() > ray.length() * slope.abs() * (1.0 + 1e-9) {
+        return;
+    }
     let alpha = depth / slope;
     if alpha >= 0.0 && alpha <= ray.length() {
         let n = if depth > 0.0 { -plane.normal() } else { plane.normal() };

@@ -1,3 +1,4 @@
+use super::unit::unit_or;
 use crate::{Contacts, Frame, Ray, Sphere};
 
 /// A ray and a ball: the first point hit; from within, the point where the ray leaves, with the normal inward.
@@ -18,6 +19,6 @@ pub fn ray_sphere(ray: &Ray, fr: &Frame, sphere: &Sphere, fs: &Frame, out: &mut 
         return;
     }
     let hit = o + u * alpha;
-    let outward = (hit - fs.position).normalized_or(-u);
+    let outward = unit_or(hit - fs.position, -u);
     out.push(hit, if q.length_squared() >= r * r { outward } else { -outward }, alpha);
 }

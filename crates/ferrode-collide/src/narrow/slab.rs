@@ -52,33 +52,6 @@ impl Span {
         self.clip_plane(-start - half, -slope, -axis);
     }
 
-    /// Keeps what lies within a cylinder of the given radius about the z axis.
-    pub fn clip_cylinder(&mut self, start: Vec3, direction: Vec3, radius: f64) {
-        let a = direction.x * direction.x + direction.y * direction.y;
-        let flat = |p: Vec3| Vec3::new(p.x, p.y, 0.0);
-        if !(a > 1e-300) {
-            if flat(start).length_squared() > radius * radius {
-                self.clear();
-            }
-            return;
-        }
-        let middle = -(start.x * direction.x + start.y * direction.y) / a;
-        let square = radius * radius - flat(start + direction * middle).length_squared();
-        if !(square >= 0.0) {
-            self.clear();
-            return;
-        }
-        let half_chord = (square / a).sqrt();
-        if middle - half_chord > self.lo {
-            self.lo = middle - half_chord;
-            self.lo_normal = flat(start + direction * self.lo).normalized_or(Vec3::X);
-        }
-        if middle + half_chord < self.hi {
-            self.hi = middle + half_chord;
-            self.hi_normal = flat(start + direction * self.hi).normalized_or(Vec3::X);
-        }
-    }
-
     /// Where a ray of the given length first meets the surface, and the outward normal there: the entry, or from
     /// within the exit.
     pub fn first_hit(&self, length: f64) -> Option<(f64, Vec3)> {

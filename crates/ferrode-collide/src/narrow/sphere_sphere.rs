@@ -13,8 +13,13 @@ pub fn sphere_sphere(a: &Sphere, fa: &Frame, b: &Sphere, fb: &Frame, out: &mut C
 #[inline]
 pub fn spheres(c1: Vec3, r1: f64, c2: Vec3, r2: f64, out: &mut Contacts<'_>) -> bool {
     let line = c1 - c2;
-    let d = line.length();
-    let depth = r1 + r2 - d;
+    let (square, reach) = (line.length_squared(), r1 + r2);
+    // Most are apart, and need no root to know it. A hair more, so that rounding here never decides.
+    if square > reach * reach * (1.0 + 1e-9) {
+        return false;
+    }
+    let d = square.sqrt();
+    let depth = reach - d;
     // Written so that a distance that is no number is no contact.
     if !(depth >= 0.0) {
         return false;
@@ -23,8 +28,8 @@ pub fn spheres(c1: Vec3, r1: f64, c2: Vec3, r2: f64, out: &mut Contacts<'_>) -> 
         out.push(c1, Vec3::X, depth);
         return true;
     }
-    let n = line * (1.0 / d);
-    let n = if n.is_finite() { n } else { line.normalized_or(Vec3::X) };
+    // Subnormal lengths have no reciprocal.
+    let n = if d > 1e-300 { line * (1.0 / d) } else { line.normalized_or(Vec3::X) };
     out.push(c1 + n * (0.5 * (r2 - r1 - d)), n, depth);
     true
 }

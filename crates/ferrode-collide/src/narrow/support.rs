@@ -17,8 +17,7 @@ pub(crate) enum Core<'a> {
     Ellipsoid(Ellipsoid),
     /// Radius of the base at −half on the z axis, and half length.
     Cone(f64, f64),
-    /// A polyhedron and the distance of its furthest corner.
-    Hull(&'a Convex, f64),
+    Hull(&'a Convex),
     /// Corners relative to the body's centre, in the pair's coordinates.
     Triangle([Vec3; 3]),
 }
@@ -31,6 +30,7 @@ pub(crate) struct Body<'a> {
     /// Relative to the pair's origin, so that a pair far from the world's loses nothing.
     pub center: Vec3,
     pub margin: f64,
+    reach: f64,
 }
 
 impl<'a> Body<'a> {
@@ -41,9 +41,11 @@ impl<'a> Body<'a> {
             Shape::Cuboid(s) => Self::cuboid(s, frame, origin),
             Shape::Capsule(s) => Self::capsule(s, frame, origin),
             Shape::Cylinder(s) => Self::cylinder(s, frame, origin),
-            Shape::Ellipsoid(s) => Self::new(Core::Ellipsoid(*s), 0.0, frame, origin),
-            Shape::Cone(s) => Self::new(Core::Cone(s.radius(), 0.5 * s.length()), 0.0, frame, origin),
-            Shape::Convex(s) => Self::new(Core::Hull(s, s.reach()), 0.0, frame, origin),
+            Shape::Ellipsoid(s) => Self::new(Core::Ellipsoid(*s), 0.0, s.reach(), frame, origin),
+            Shape::Cone(s) => {
+                Self::new(Core::Cone(s.radius(), 0.5 * s.length()), 0.0, s.reach(), frame, origin)
+            }
+            Shape::Convex(s) => Self::new(Core::Hull(s), 0.0, s.reach(), frame, origin),
             Shape::Plane(_)
             | Shape::Ray(_)
             | Shape::TriMesh(_)
@@ -53,30 +55,31 @@ impl<'a> Body<'a> {
     }
 
     pub fn sphere(s: &Sphere, frame: &Frame, origin: Vec3) -> Self {
-        Self::new(Core::Point, s.radius(), frame, origin)
+        Self::new(Core::Point, s.radius(), s.reach(), frame, origin)
     }
 
     pub fn cuboid(s: &Cuboid, frame: &Frame, origin: Vec3) -> Self {
-        Self::new(Core::Cuboid(s.half_sides()), 0.0, frame, origin)
+        Self::new(Core::Cuboid(s.half_sides()), 0.0, s.reach(), frame, origin)
     }
 
     pub fn capsule(s: &Capsule, frame: &Frame, origin: Vec3) -> Self {
-        Self::new(Core::Segment(0.5 * s.length()), s.radius(), frame, origin)
+        Self::new(Core::Segment(0.5 * s.length()), s.radius(), s.reach(), frame, origin)
     }
 
     pub fn cylinder(s: &Cylinder, frame: &Frame, origin: Vec3) -> Self {
-        Self::new(Core::Cylinder(s.radius(), 0.5 * s.length()), 0.0, frame, origin)
+        Self::new(Core::Cylinder(s.radius(), 0.5 * s.length()), 0.0, s.reach(), frame, origin)
     }
 
     /// A triangle with the given corners in the pair's coordinates.
     pub fn triangle(corners: [Vec3; 3]) -> Self {
         let center = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
-        let core = Core::Triangle(corners.map(|p| p - center));
-        Self { core, rotation: Mat3::IDENTITY, center, margin: 0.0 }
+        let corners = corners.map(|p| p - center);
+        let reach = corners.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt();
+        Self { core: Core::Triangle(corners), rotation: Mat3::IDENTITY, center, margin: 0.0, reach }
     }
 
-    fn new(core: Core<'a>, margin: f64, frame: &Frame, origin: Vec3) -> Self {
-        Self { core, rotation: frame.rotation, center: frame.position - origin, margin }
+    fn new(core: Core<'a>, margin: f64, reach: f64, frame: &Frame, origin: Vec3) -> Self {
+        Self { core, rotation: frame.rotation, center: frame.position - origin, margin, reach }
     }
 
     /// The point of the core furthest along `d`, which need not be a unit vector.
@@ -103,7 +106,7 @@ impl<'a> Body<'a> {
                     Vec3::new(l.x * scale, l.y * scale, -half)
                 }
             }
-            Core::Hull(hull, _) => hull.support(l),
+            Core::Hull(hull) => hull.support(l),
             Core::Triangle(corners) => {
                 let [a, b, c] = corners.map(|p| p.dot(d));
                 let i = if a >= b && a >= c {
@@ -120,23 +123,15 @@ impl<'a> Body<'a> {
     }
 
     /// A length that no part of the body is further than from its centre.
+    #[inline]
     pub fn reach(&self) -> f64 {
-        let core = match self.core {
-            Core::Point => 0.0,
-            Core::Segment(half) => half,
-            Core::Cuboid(h) => h.length(),
-            Core::Ellipsoid(e) => e.radii().abs_max(),
-            Core::Cylinder(radius, half) | Core::Cone(radius, half) => (radius * radius + half * half).sqrt(),
-            Core::Hull(_, reach) => reach,
-            Core::Triangle(p) => p.iter().map(|p| p.length()).fold(0.0, f64::max),
-        };
-        core + self.margin
+        self.reach
     }
 
     /// A point within the body.
     pub fn middle(&self) -> Vec3 {
         match self.core {
-            Core::Hull(hull, _) => self.place(hull.middle()),
+            Core::Hull(hull) => self.place(hull.middle()),
             _ => self.center,
         }
     }

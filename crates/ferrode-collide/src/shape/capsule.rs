@@ -31,6 +31,12 @@ impl Capsule {
         self.length
     }
 
+    /// Distance of the furthest point from the centre.
+    #[inline]
+    pub(crate) fn reach(&self) -> f64 {
+        0.5 * self.length + self.radius
+    }
+
     /// Volume in cubic metres.
     pub fn volume(&self) -> f64 {
         PI * self.radius * self.radius * (self.length + 4.0 / 3.0 * self.radius)

@@ -17,6 +17,8 @@ struct Polyhedron {
     corners: Vec<u32>,
     volume: f64,
     middle: Vec3,
+    /// Distance of the furthest corner from the local origin.
+    reach: f64,
 }
 
 /// A face of a polyhedron.
@@ -53,6 +55,7 @@ impl Convex {
             faces: Vec::with_capacity(faces.len()),
             corners: Vec::new(),
             volume: 0.0,
+            reach: points.iter().map(|p| p.length()).fold(0.0, f64::max),
             middle: points.iter().fold(Vec3::ZERO, |sum, &p| sum + p) / points.len() as f64,
         };
         let center = data.middle;
@@ -153,8 +156,9 @@ impl Convex {
     }
 
     /// Distance of the furthest corner from the local origin.
+    #[inline]
     pub fn reach(&self) -> f64 {
-        self.data.points.iter().map(|p| p.length()).fold(0.0, f64::max)
+        self.data.reach
     }
 
     /// The world box around the polyhedron.

@@ -6,6 +6,8 @@ use ferrode_math::{Aabb, Vec3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cuboid {
     half: Vec3,
+    /// Distance of the corners from the centre.
+    reach: f64,
 }
 
 impl Cuboid {
@@ -14,7 +16,7 @@ impl Cuboid {
         checked_size("box side x", sides.x)?;
         checked_size("box side y", sides.y)?;
         checked_size("box side z", sides.z)?;
-        Ok(Self { half: sides * 0.5 })
+        Ok(Self::with_half(sides * 0.5))
     }
 
     /// A box with the given half side lengths in metres.
@@ -22,7 +24,17 @@ impl Cuboid {
         checked_size("box half side x", half.x)?;
         checked_size("box half side y", half.y)?;
         checked_size("box half side z", half.z)?;
-        Ok(Self { half })
+        Ok(Self::with_half(half))
+    }
+
+    fn with_half(half: Vec3) -> Self {
+        Self { half, reach: half.length() }
+    }
+
+    /// Distance of the furthest point from the centre.
+    #[inline]
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
     }
 
     /// Full side lengths in metres.

@@ -8,15 +8,17 @@ use ferrode_math::{Aabb, Vec3};
 pub struct Cylinder {
     radius: f64,
     length: f64,
+    /// Distance of the furthest point from the centre.
+    reach: f64,
 }
 
 impl Cylinder {
     /// A cylinder of the given radius and length in metres.
     pub fn new(radius: f64, length: f64) -> Result<Self, ShapeError> {
-        Ok(Self {
-            radius: checked_size("cylinder radius", radius)?,
-            length: checked_size("cylinder length", length)?,
-        })
+        let radius = checked_size("cylinder radius", radius)?;
+        let length = checked_size("cylinder length", length)?;
+        let reach = (radius * radius + 0.25 * length * length).sqrt();
+        Ok(Self { radius, length, reach })
     }
 
     /// Radius in metres.
@@ -29,6 +31,12 @@ impl Cylinder {
     #[inline]
     pub fn length(&self) -> f64 {
         self.length
+    }
+
+    /// Distance of the furthest point from the centre.
+    #[inline]
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
     }
 
     /// Volume in cubic metres.

@@ -24,6 +24,12 @@ impl Ellipsoid {
         self.radii
     }
 
+    /// Distance of the furthest point from the centre.
+    #[inline]
+    pub(crate) fn reach(&self) -> f64 {
+        self.radii.x.max(self.radii.y).max(self.radii.z)
+    }
+
     /// Volume in cubic metres.
     pub fn volume(&self) -> f64 {
         4.0 / 3.0 * PI * self.radii.x * self.radii.y * self.radii.z

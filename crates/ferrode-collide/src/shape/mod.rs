@@ -135,6 +135,24 @@ impl Shape {
         }
     }
 
+    /// Distance from the origin of its frame that no part of the shape is beyond; infinite if there is none, or none is
+    /// known.
+    #[inline]
+    pub(crate) fn reach(&self) -> f64 {
+        match self {
+            Self::Sphere(s) => s.reach(),
+            Self::Cuboid(s) => s.reach(),
+            Self::Capsule(s) => s.reach(),
+            Self::Cylinder(s) => s.reach(),
+            Self::Ellipsoid(s) => s.reach(),
+            Self::Cone(s) => s.reach(),
+            Self::Convex(s) => s.reach(),
+            Self::TriMesh(_) | Self::Plane(_) | Self::Ray(_) | Self::Heightfield(_) | Self::Custom(_) => {
+                f64::INFINITY
+            }
+        }
+    }
+
     /// Volume in cubic metres; infinite for a plane, zero for a ray and for a heightfield, which is a surface.
     pub fn volume(&self) -> f64 {
         match self {

@@ -20,6 +20,12 @@ impl Sphere {
         self.radius
     }
 
+    /// Distance of the furthest point from the centre.
+    #[inline]
+    pub(crate) fn reach(&self) -> f64 {
+        self.radius
+    }
+
     /// Volume in cubic metres.
     pub fn volume(&self) -> f64 {
         4.0 / 3.0 * core::f64::consts::PI * self.radius * self.radius * self.radius

@@ -1,7 +1,7 @@
 //! Times the contacts of every pair of classes against installed libode: touching, near (boxes overlap, geoms do not) and
 //! apart, the same random poses for both, in turns.
 //!
-//! `cargo run --release -p ferrode-bench-collide --bin pairs -- [--pair WORD[-WORD]] [--reps N] [--out DIR]`
+//! `cargo run --release -p ferrode-bench-collide --bin pairs -- [--pair WORD[-WORD]] [--state WORD] [--reps N] [--out DIR]`
 //!
 //! Libode is asked by `dCollide` for up to 8 contacts, Ferrode by `Colliders::geom_contacts` for as many. Figures are
 //! processor time of the one thread, medians. Beside them: in how many of the touching poses both have contacts, how many,
@@ -184,6 +184,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             let mut parts = Vec::new();
             let mut touching = None;
             for state in State::ALL {
+                if option("--state").is_some_and(|s| !format!("{state:?}").to_lowercase().contains(s.as_str())) {
+                    continue;
+                }
                 let samples =
                     poses::samples([first, second], lists, state, POSES, &mut Numbers::new(7 + i as u32));
                 if samples.len() < POSES {
