@@ -47,7 +47,7 @@ pub(super) fn body_plane(
     };
     match body.core {
         Core::Cuboid(h) => (0..8).for_each(|i| push(corner(h, i), i)),
-        Core::Hull(hull, _) => {
+        Core::Hull(hull) => {
             for (i, p) in hull.points().iter().enumerate() {
                 push(*p, i as u32);
             }

@@ -295,8 +295,7 @@ static TABLE: [[Option<Collider>; 16]; 16] = {
     while i <= KINDS {
         let mut j = 0;
         while j <= KINDS {
-            table[i][j] =
-                if i == KINDS || j == KINDS { Some(run_custom as Collider) } else { PAIRS[i][j] };
+            table[i][j] = if i == KINDS || j == KINDS { Some(run_custom as Collider) } else { PAIRS[i][j] };
             j += 1;
         }
         i += 1;

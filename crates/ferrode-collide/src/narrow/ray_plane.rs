@@ -9,7 +9,9 @@ pub fn ray_plane(ray: &Ray, fr: &Frame, plane: &Plane, _: &Frame, out: &mut Cont
     }
     let depth = plane.depth(o);
     // Before the division: most miss.
-    if (depth < 0.0) != (slope < 0.0) && depth != 0.0 || depth.abs() > ray.length() * slope.abs() * (1.0 + 1e-9) {
+    if (depth < 0.0) != (slope < 0.0) && depth != 0.0
+        || depth.abs() > ray.length() * slope.abs() * (1.0 + 1e-9)
+    {
         return;
     }
     let alpha = depth / slope;

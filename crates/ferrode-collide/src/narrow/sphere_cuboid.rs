@@ -8,7 +8,15 @@ use ferrode_math::Vec3;
 pub fn sphere_cuboid(sphere: &Sphere, fs: &Frame, cuboid: &Cuboid, fb: &Frame, out: &mut Contacts<'_>) {
     let half = cuboid.half_sides();
     let local = fb.point_to_local(fs.position);
-    let clamp = |x: f64, h: f64| if x > h { h } else if x < -h { -h } else { x };
+    let clamp = |x: f64, h: f64| {
+        if x > h {
+            h
+        } else if x < -h {
+            -h
+        } else {
+            x
+        }
+    };
     let clamped = Vec3::new(clamp(local.x, half.x), clamp(local.y, half.y), clamp(local.z, half.z));
     if clamped != local {
         if (local - clamped).length_squared() > sphere.radius() * sphere.radius() * (1.0 + 1e-9) {
@@ -19,7 +27,8 @@ pub fn sphere_cuboid(sphere: &Sphere, fs: &Frame, cuboid: &Cuboid, fb: &Frame, o
         let depth = sphere.radius() - line.length();
         if depth >= 0.0 {
             // A centre a rounding error outside may coincide with its nearest point in world coordinates.
-            let n = unit(line).unwrap_or_else(|| fb.vector_to_world((local - clamped).normalized_or(Vec3::Z)));
+            let n =
+                unit(line).unwrap_or_else(|| fb.vector_to_world((local - clamped).normalized_or(Vec3::Z)));
             out.push(q, n, depth);
         }
         return;
