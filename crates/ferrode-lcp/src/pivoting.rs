@@ -28,7 +28,7 @@ pub(crate) mod line;
 use crate::error::LcpError;
 use crate::problem::check_row;
 use crate::residual::row_residual;
-use crate::sparse::kernel6::Six;
+use crate::sparse::kernels::Six;
 use crate::sparse::symbolic::{Symbolic, SymbolicCache};
 use crate::sparse::system::System;
 use crate::sparse::{NO_SPARSE_BODY, RowBlock, ScaledRow};
@@ -183,7 +183,7 @@ pub fn solve_pivoting(
     let PivotingWorkspace { shapes, .. } = workspace;
     let mut cache = core::mem::take(shapes);
     let report = {
-        let shape = cache.get(options.topology, problem.bodies, problem.blocks);
+        let shape = cache.get(options.topology, problem.bodies, problem.blocks, problem.lo, problem.hi);
         Solve { p: problem, options, shape, work: workspace, report: PivotingReport::default() }.run()
     };
     workspace.shapes = cache;
@@ -375,7 +375,7 @@ impl Solve<'_, '_> {
                 best[r] += t * dy[r];
             }
         }
-        crate::sparse::system::multiply(self.p.blocks, self.p.jacobian, self.shape, best_y, best_jy);
+        crate::sparse::system::multiply(self.p.blocks, self.p.jacobian, best_y, best_jy);
         if (t - 1.0).abs() < 1e-9 {
             // At the end of a whole step the forces are known better than `r - J y` tells them.
             core::mem::swap(state, proposed);
@@ -412,11 +412,11 @@ impl Solve<'_, '_> {
         let PivotingWorkspace { system, state, factored, lo, hi, .. } = &mut **work;
         let mut changed = factored.len() != state.len();
         if !changed {
-            for (block, columns) in p.blocks.iter().zip(&shape.columns) {
+            for (i, block) in p.blocks.iter().enumerate() {
                 let free = |s: &RowState| *s == RowState::Free;
                 if block.range().any(|row| free(&state[row]) != free(&factored[row])) {
                     changed = true;
-                    columns.iter().for_each(|c| system.factor.invalidate(*c, shape));
+                    shape.for_each_touched(i, |column| system.factor.invalidate(column, shape));
                 }
             }
         }
@@ -433,7 +433,7 @@ impl Solve<'_, '_> {
             }
         }
         let largest = system.solve(p.blocks, p.jacobian, state, shape);
-        system.product(p.blocks, p.jacobian, shape);
+        system.product(p.blocks, p.jacobian);
         largest
     }
 
@@ -507,9 +507,9 @@ impl Solve<'_, '_> {
 
     /// The natural residual of the forces as they are, for the problem as it was given.
     fn measure(&mut self) {
-        let Self { p, shape, work, report, .. } = self;
+        let Self { p, work, report, .. } = self;
         let PivotingWorkspace { system, lo, hi, .. } = &mut **work;
-        system.accelerations(p.blocks, p.jacobian, shape);
+        system.accelerations(p.blocks, p.jacobian);
         (report.residual, report.largest) = (0.0, 0.0);
         for row in 0..system.lambda.len() {
             let lambda = system.lambda[row];

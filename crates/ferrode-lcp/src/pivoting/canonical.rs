@@ -17,13 +17,13 @@ impl Solve<'_, '_> {
         self.work.accepted.clone_from(&self.work.state);
         self.work.needed.clear();
         self.work.needed.resize(self.work.state.len(), false);
-        let largest = self.put_at_bounds(largest).unwrap_or_else(|| {
+        self.put_at_bounds(largest).unwrap_or_else(|| {
             // They would not go there.
             self.work.state.clone_from(&self.work.accepted);
             self.solve_set()
         });
         let Self { p, shape, work, .. } = self;
-        work.system.polish(p.blocks, p.jacobian, &work.state, shape, largest);
+        work.system.polish(p.blocks, p.jacobian, &work.state, shape);
         true
     }
 

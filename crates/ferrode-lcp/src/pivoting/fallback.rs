@@ -4,7 +4,7 @@ use super::SparseLcp;
 use crate::dantzig::{DantzigOptions, DantzigWorkspace, solve_dantzig_with};
 use crate::dense::pad;
 use crate::problem::BoxedLcp;
-use crate::sparse::{NO_SPARSE_BODY, kernel6};
+use crate::sparse::{NO_SPARSE_BODY, kernels};
 
 /// Memory of the dense method.
 #[derive(Clone, Debug, Default)]
@@ -30,7 +30,7 @@ impl Dense {
                             for r in first.range() {
                                 for c in second.range() {
                                     self.matrix[r * stride + c] +=
-                                        kernel6::dot(&p.jacobian[r][s], &p.jacobian[c][t]);
+                                        kernels::dot(&p.jacobian[r][s], &p.jacobian[c][t]);
                                 }
                             }
                         }

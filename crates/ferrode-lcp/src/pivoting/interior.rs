@@ -58,7 +58,7 @@ impl Interior {
             v.resize(m, 0.0);
         }
         let Bounds { lo, hi } = bounds;
-        let mut pairs = self.start(blocks, jacobian, shape, system, bounds);
+        let mut pairs = self.start(blocks, jacobian, system, bounds);
         let mut steps = 0;
         let first = self.mean_product(system, bounds, pairs);
         if pairs == 0 || !first.is_finite() {
@@ -97,7 +97,7 @@ impl Interior {
                 self.s[i] += reach * self.ds[i];
                 self.t[i] += reach * self.dt[i];
             }
-            system.accelerations(blocks, jacobian, shape);
+            system.accelerations(blocks, jacobian);
             if reach < 1e-6 || reach.is_nan() {
                 break;
             }
@@ -120,7 +120,6 @@ impl Interior {
         &mut self,
         blocks: &[RowBlock],
         jacobian: &[ScaledRow],
-        shape: &Symbolic,
         system: &mut System,
         Bounds { lo, hi }: Bounds<'_>,
     ) -> usize {
@@ -142,7 +141,7 @@ impl Interior {
                 (false, false) => 0.0,
             };
         }
-        system.accelerations(blocks, jacobian, shape);
+        system.accelerations(blocks, jacobian);
         self.slacks(system);
         for i in 0..m {
             if lo[i] == hi[i] {

@@ -16,7 +16,7 @@
 //! trust region problems", 1997.)
 
 use super::RowState;
-use crate::sparse::kernel6::{self, Six};
+use crate::sparse::kernels::{self, Six};
 
 /// The bounds in force.
 #[derive(Clone, Copy)]
@@ -39,7 +39,7 @@ impl Rows<'_> {
     pub fn value(&self, y: &[Six], jy: &[f64]) -> f64 {
         let mut sum = 0.0;
         for y in y {
-            sum += 0.5 * kernel6::dot(y, y);
+            sum += 0.5 * kernels::dot(y, y);
         }
         for (i, jy) in jy.iter().enumerate() {
             let z = self.rhs[i] - jy;
@@ -65,8 +65,8 @@ impl Rows<'_> {
     pub fn search(&self, y: &[Six], dy: &[Six], jy: &[f64], jdy: &[f64]) -> f64 {
         let (mut at_0, mut growth) = (0.0, 0.0);
         for (y, d) in y.iter().zip(dy) {
-            at_0 += kernel6::dot(y, d);
-            growth += kernel6::dot(d, d);
+            at_0 += kernels::dot(y, d);
+            growth += kernels::dot(d, d);
         }
         // Slope and its growth at t.
         let slope = |t: f64| {

@@ -1,28 +1,29 @@
-//! The numbers of the factor: `H = L L^T` in blocks of 6x6, column by column from the left.
+//! The numbers of the factor: `K = L D L^T` in blocks of 3 or 6 rows and columns, `D` the signs of the columns, column by column from the left.
 //!
-//! Column `c` is made from column `c` of `H` and the columns `k < c` in which row `c` has a block:
+//! Column `c` is made from column `c` of `K` and the columns `k < c` in which row `c` has a block:
 //!
 //! ```text
-//!     L_cc L_cc^T = H_cc - sum_k L_ck L_ck^T          L_rc = (H_rc - sum_k L_rk L_ck^T) L_cc^-T
+//!     d_c L_cc L_cc^T = K_cc - sum_k d_k L_ck L_ck^T          L_rc = (K_rc - sum_k d_k L_rk L_ck^T) L_cc^-T
 //! ```
 //!
-//! It reads only its descendants in the elimination tree. So when some bodies' blocks of `H` change, the columns on the paths from
-//! these to the root are made anew, by the same operations in the same order as from scratch, to the same bits.
+//! (in which `L_rc` lacks the factor `d_c`, which is put back where it is used). It reads only its descendants in the elimination tree. So
+//! when some blocks of `K` change, the columns on the paths from these to the root are made anew, by the same operations in the same
+//! order as from scratch, to the same bits.
 
-use super::kernel6::{self, Block, Six};
+use super::kernels::{
+    Block, backward, by_sizes, cholesky, forward, solve_right, sub_aat, sub_abt, sub_mul, sub_mul_transposed,
+};
 use super::symbolic::{NONE, Symbolic};
 
 /// The factor.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Factor {
-    /// `L_cc`, lower triangle, and the inverses of its diagonal.
-    diagonal: Vec<Block>,
-    inverse: Vec<Six>,
-    /// `L_rc` in the order of [`Symbolic::row`].
-    below: Vec<Block>,
+    /// Column after column: the lower triangle of `L_cc`, the inverses of its diagonal, the blocks `L_rc` below.
+    pub values: Vec<f64>,
     /// Columns to be made.
     stale: Vec<bool>,
-    /// For each row the block of the present column, where the column has one.
+    any_stale: bool,
+    /// For each row where the block of the present column is, counted from the column's start.
     position: Vec<u32>,
     /// Pivots that were not positive and had to be replaced: in the last [`Factor::factorise`].
     pub replaced: u32,
@@ -31,18 +32,17 @@ pub(crate) struct Factor {
 impl Factor {
     /// Sizes the factor for a shape; everything is stale.
     pub fn reset(&mut self, shape: &Symbolic) {
-        let n = shape.columns_len();
-        self.diagonal.resize(n, [0.0; 36]);
-        self.inverse.resize(n, [0.0; 6]);
-        self.below.resize(shape.row.len(), [0.0; 36]);
-        self.position.clear();
+        let n = shape.columns();
+        self.values.resize(shape.numbers(), 0.0);
         self.position.resize(n, NONE);
         self.stale.clear();
         self.stale.resize(n, true);
+        self.any_stale = true;
     }
 
     /// Has a column made again, with all that depend on it.
     pub fn invalidate(&mut self, column: u32, shape: &Symbolic) {
+        self.any_stale = true;
         let mut next = (column != NONE).then_some(column as usize);
         while let Some(c) = next
             && !self.stale[c]
@@ -56,89 +56,111 @@ impl Factor {
         column != NONE && self.stale[column as usize]
     }
 
-    /// Sets the stale columns to those of the unit matrix, to which blocks are then added.
+    /// Sets the stale columns to those of the unit matrix with the signs of the columns, to which blocks are then added.
     pub fn clear_stale(&mut self, shape: &Symbolic) {
-        for c in 0..shape.columns_len() {
+        for c in 0..shape.columns() {
             if self.stale[c] {
-                let block = &mut self.diagonal[c];
-                *block = [0.0; 36];
-                for i in 0..6 {
-                    block[7 * i] = 1.0;
+                let (own, width) = (shape.start[c] as usize, usize::from(shape.size[c]));
+                self.values[own..shape.start[c + 1] as usize].fill(0.0);
+                for i in 0..width {
+                    self.values[own + (width + 1) * i] = shape.sign[c];
                 }
-                self.below[shape.column_start[c] as usize..shape.column_start[c + 1] as usize]
-                    .fill([0.0; 36]);
             }
         }
     }
 
-    /// Adds to the diagonal block of a column.
-    pub fn add_diagonal(&mut self, column: u32, block: &Block) {
-        add(&mut self.diagonal[column as usize], block);
+    /// Adds to the diagonal block of a body's column.
+    pub fn add_diagonal(&mut self, column: u32, shape: &Symbolic, block: &Block) {
+        add(&mut self.values[shape.start[column as usize] as usize..], block);
     }
 
-    /// Adds to a block below the diagonal.
-    pub fn add_below(&mut self, at: u32, block: &Block) {
-        add(&mut self.below[at as usize], block);
+    /// Adds to a block of two bodies below the diagonal.
+    pub fn add_below(&mut self, at: u32, shape: &Symbolic, block: &Block) {
+        add(&mut self.values[shape.at[at as usize] as usize..], block);
     }
 
     /// Makes the stale columns.
     pub fn factorise(&mut self, shape: &Symbolic) {
         self.replaced = 0;
-        for c in 0..shape.columns_len() {
+        for c in 0..shape.columns() {
             if !core::mem::replace(&mut self.stale[c], false) {
                 continue;
             }
             let range = shape.column_start[c] as usize..shape.column_start[c + 1] as usize;
-            for block in range.clone() {
-                self.position[shape.row[block] as usize] = block as u32;
-            }
+            let start = shape.start[c];
             // Blocks of earlier columns come before this column's own.
-            let (earlier, own) = self.below.split_at_mut(range.start);
-            let diagonal = &mut self.diagonal[c];
-            for at in shape.row_start[c] as usize..shape.row_start[c + 1] as usize {
-                let first = shape.row_block[at] as usize;
-                let end = shape.column_start[shape.row_column[at] as usize + 1] as usize;
-                let factor = &earlier[first];
-                kernel6::sub_abt(diagonal, factor, factor);
-                for (block, row) in earlier[first + 1..end].iter().zip(&shape.row[first + 1..end]) {
-                    let target = self.position[*row as usize] as usize - range.start;
-                    kernel6::sub_abt(&mut own[target], block, factor);
+            let (earlier, own) = self.values.split_at_mut(start as usize);
+            let width = shape.size[c];
+            let sources = shape.row_start[c] as usize..shape.row_start[c + 1] as usize;
+            if !sources.is_empty() {
+                for block in range.clone() {
+                    self.position[shape.row[block] as usize] = shape.at[block] - start;
                 }
             }
-            self.replaced += kernel6::cholesky(diagonal, &mut self.inverse[c], 1.0);
-            for block in &mut own[..range.len()] {
-                kernel6::solve_right(block, diagonal, &self.inverse[c]);
+            for source in sources {
+                let first = shape.row_block[source] as usize;
+                let k = shape.row_column[source] as usize;
+                let (depth, sign) = (shape.size[k], shape.sign[k]);
+                let factor = &earlier[shape.at[first] as usize..];
+                by_sizes!(sub_aat, [width, depth], (own, factor, sign));
+                for block in first + 1..shape.column_start[k + 1] as usize {
+                    let row = shape.row[block] as usize;
+                    let target = &mut own[self.position[row] as usize..];
+                    let other = &earlier[shape.at[block] as usize..];
+                    by_sizes!(sub_abt, [shape.size[row], width, depth], (target, other, factor, sign));
+                }
+            }
+            let (diagonal, rest) = own.split_at_mut(usize::from(width) * usize::from(width));
+            self.replaced += by_sizes!(cholesky, [width], (diagonal, rest, shape.sign[c]));
+            let (inverse, mut rest) = rest.split_at_mut(usize::from(width));
+            for row in &shape.row[range] {
+                let height = shape.size[*row as usize];
+                by_sizes!(solve_right, [height, width], (rest, diagonal, inverse));
+                rest = &mut rest[usize::from(height) * usize::from(width)..];
             }
         }
+        self.any_stale = false;
     }
 
-    /// `x = H^-1 x`.
-    pub fn solve(&self, shape: &Symbolic, x: &mut [Six]) {
-        let n = shape.columns_len();
+    /// `x = K^-1 x`, `x` by columns.
+    pub fn solve(&self, shape: &Symbolic, x: &mut [f64]) {
+        let n = shape.columns();
         for c in 0..n {
-            let (head, tail) = x.split_at_mut(c + 1);
-            let own = &mut head[c];
-            kernel6::forward(own, &self.diagonal[c], &self.inverse[c]);
+            let (own, width) = (&self.values[shape.start[c] as usize..], shape.size[c]);
+            let (diagonal, rest) = own.split_at(usize::from(width) * usize::from(width));
+            let (inverse, mut rest) = rest.split_at(usize::from(width));
+            let (head, tail) = x.split_at_mut(shape.offset[c + 1] as usize);
+            let own = &mut head[shape.offset[c] as usize..];
+            by_sizes!(forward, [width], (own, diagonal, inverse));
             for block in shape.column_start[c] as usize..shape.column_start[c + 1] as usize {
-                let row = shape.row[block] as usize - c - 1;
-                kernel6::sub_mul(&mut tail[row], &self.below[block], own);
+                let row = shape.row[block] as usize;
+                let height = shape.size[row];
+                let target = &mut tail[(shape.offset[row] - shape.offset[c + 1]) as usize..];
+                by_sizes!(sub_mul, [height, width], (target, rest, own, shape.sign[c]));
+                rest = &rest[usize::from(height) * usize::from(width)..];
             }
         }
         for c in (0..n).rev() {
-            let (head, tail) = x.split_at_mut(c + 1);
-            let own = &mut head[c];
+            let (own, width) = (&self.values[shape.start[c] as usize..], shape.size[c]);
+            let (diagonal, rest) = own.split_at(usize::from(width) * usize::from(width));
+            let (inverse, mut rest) = rest.split_at(usize::from(width));
+            let (head, tail) = x.split_at_mut(shape.offset[c + 1] as usize);
+            let own = &mut head[shape.offset[c] as usize..];
             for block in shape.column_start[c] as usize..shape.column_start[c + 1] as usize {
-                let row = shape.row[block] as usize - c - 1;
-                kernel6::sub_mul_transposed(own, &self.below[block], &tail[row]);
+                let row = shape.row[block] as usize;
+                let height = shape.size[row];
+                let source = &tail[(shape.offset[row] - shape.offset[c + 1]) as usize..];
+                by_sizes!(sub_mul_transposed, [height, width], (own, rest, source));
+                rest = &rest[usize::from(height) * usize::from(width)..];
             }
-            kernel6::backward(own, &self.diagonal[c], &self.inverse[c]);
+            by_sizes!(backward, [width], (own, diagonal, inverse, shape.sign[c]));
         }
     }
 }
 
 #[inline(always)]
-fn add(to: &mut Block, block: &Block) {
-    for (to, x) in to.iter_mut().zip(block) {
+fn add(to: &mut [f64], block: &Block) {
+    for (to, x) in to[..36].iter_mut().zip(block) {
         *to += x;
     }
 }

@@ -1,12 +1,33 @@
-//! The order of elimination: always a body with the fewest neighbours, of equals the one that comes first.
+//! The order of elimination: always an unknown with the fewest neighbours, of equals the one that comes first.
 //!
-//! Eliminating a body joins all its neighbours to each other. Its neighbours at that moment are the rows of its column in the
-//! factor, so playing the elimination through gives the order and the shape of the factor at once. In a tree some body always
+//! Eliminating an unknown joins all its neighbours to each other. Its neighbours at that moment are the rows of its column in the
+//! factor, so playing the elimination through gives the order and the shape of the factor at once. In a tree some unknown always
 //! has one neighbour, and nothing fills in.
 //! (D. Rose, "A graph-theoretic study of the numerical solution of sparse positive definite systems of linear equations", 1972.)
 
+use super::symbolic::NONE;
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
+
+/// An unknown to be eliminated: the acceleration of a body, or the forces of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Node {
+    /// Numbers in it.
+    pub size: u8,
+    /// If this is a joint all of whose bodies are unknowns too: these. It has to wait until one of them is eliminated.
+    pub after: [u32; 2],
+}
+
+impl Node {
+    /// An unknown that need not wait.
+    pub fn free(size: u8) -> Self {
+        Self { size, after: [NONE; 2] }
+    }
+
+    fn waits(&self) -> bool {
+        self.after[0] != NONE
+    }
+}
 
 /// Memory of the elimination.
 #[derive(Clone, Debug, Default)]
@@ -14,15 +35,24 @@ pub(crate) struct Elimination {
     /// Neighbours not yet eliminated, ascending.
     neighbours: Vec<Vec<u32>>,
     merged: Vec<u32>,
-    /// Bodies by number of neighbours and number; entries whose number is out of date are skipped.
+    /// Unknowns by size of their neighbours and number; entries whose size is out of date are skipped.
     queue: BinaryHeap<Reverse<(u32, u32)>>,
-    eliminated: Vec<bool>,
+    degree: Vec<u32>,
+    state: Vec<State>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Waiting,
+    Ready,
+    Eliminated,
 }
 
 impl Elimination {
-    /// Plays the elimination of `n` bodies through, given the pairs that share rows, each once, ascending.
-    /// Calls `column(body, neighbours)` for each body in the order of elimination.
-    pub fn run(&mut self, n: usize, edges: &[[u32; 2]], mut column: impl FnMut(u32, &[u32])) {
+    /// Plays the elimination through, given the pairs of unknowns that share a number of the matrix, each once.
+    /// Calls `column(node, neighbours)` for each in the order of elimination.
+    pub fn run(&mut self, nodes: &[Node], edges: &[[u32; 2]], mut column: impl FnMut(u32, &[u32])) {
+        let n = nodes.len();
         if self.neighbours.len() < n {
             self.neighbours.resize_with(n, Vec::new);
         }
@@ -31,29 +61,38 @@ impl Elimination {
             self.neighbours[*a as usize].push(*b);
             self.neighbours[*b as usize].push(*a);
         }
+        let size = |list: &[u32]| list.iter().map(|i| u32::from(nodes[*i as usize].size)).sum::<u32>();
         self.queue.clear();
-        for body in 0..n {
-            self.neighbours[body].sort_unstable();
-            self.queue.push(Reverse((self.neighbours[body].len() as u32, body as u32)));
+        self.state.clear();
+        self.degree.clear();
+        for (i, node) in nodes.iter().enumerate() {
+            self.neighbours[i].sort_unstable();
+            self.degree.push(size(&self.neighbours[i]));
+            self.state.push(if node.waits() { State::Waiting } else { State::Ready });
+            if !node.waits() {
+                self.queue.push(Reverse((self.degree[i], i as u32)));
+            }
         }
-        self.eliminated.clear();
-        self.eliminated.resize(n, false);
-        while let Some(Reverse((degree, body))) = self.queue.pop() {
-            let v = body as usize;
-            if self.eliminated[v] || self.neighbours[v].len() != degree as usize {
+        while let Some(Reverse((degree, node))) = self.queue.pop() {
+            let v = node as usize;
+            if self.state[v] == State::Eliminated || self.degree[v] != degree {
                 continue;
             }
-            self.eliminated[v] = true;
+            self.state[v] = State::Eliminated;
             let clique = core::mem::take(&mut self.neighbours[v]);
-            column(body, &clique);
-            for u in &clique {
-                let was = self.neighbours[*u as usize].len();
-                merge(&self.neighbours[*u as usize], &clique, &mut self.merged, [*u, body]);
-                core::mem::swap(&mut self.neighbours[*u as usize], &mut self.merged);
-                let is = self.neighbours[*u as usize].len();
-                if is != was {
-                    self.queue.push(Reverse((is as u32, *u)));
+            column(node, &clique);
+            for u in clique.iter().map(|u| *u as usize) {
+                merge(&self.neighbours[u], &clique, &mut self.merged, [u as u32, node]);
+                core::mem::swap(&mut self.neighbours[u], &mut self.merged);
+                let is = size(&self.neighbours[u]);
+                let freed = self.state[u] == State::Waiting && nodes[u].after.contains(&node);
+                if freed {
+                    self.state[u] = State::Ready;
                 }
+                if self.state[u] == State::Ready && (freed || is != self.degree[u]) {
+                    self.queue.push(Reverse((is, u as u32)));
+                }
+                self.degree[u] = is;
             }
             self.neighbours[v] = clique;
         }
@@ -77,11 +116,11 @@ fn merge(a: &[u32], b: &[u32], out: &mut Vec<u32>, without: [u32; 2]) {
 
 #[cfg(test)]
 mod tests {
-    use super::Elimination;
+    use super::{Elimination, Node};
 
     fn fill(n: usize, edges: &[[u32; 2]]) -> (Vec<u32>, usize) {
         let (mut order, mut blocks) = (Vec::new(), 0);
-        Elimination::default().run(n, edges, |body, rows| {
+        Elimination::default().run(&vec![Node::free(6); n], edges, |body, rows| {
             order.push(body);
             blocks += rows.len();
         });
@@ -106,5 +145,20 @@ mod tests {
         edges.insert(0, [0, n - 1]);
         let (_, blocks) = fill(n as usize, &edges);
         assert_eq!(blocks, 2 * n as usize - 3);
+    }
+
+    #[test]
+    fn a_joint_waits_for_one_of_its_bodies() {
+        // Bodies 0 to 3 in a row, joints 4 to 6 between them: a joint has two neighbours, the inner bodies too.
+        let mut nodes = vec![Node::free(6); 4];
+        nodes.extend((0..3).map(|i| Node { size: 3, after: [i, i + 1] }));
+        let edges: Vec<[u32; 2]> = (0..3).flat_map(|i| [[i, i + 4], [i + 1, i + 4]]).collect();
+        let mut order = Vec::new();
+        Elimination::default().run(&nodes, &edges, |node, _| order.push(node));
+        assert_eq!(order.len(), 7);
+        for joint in 4..7 {
+            let place = |node: u32| order.iter().position(|o| *o == node).unwrap();
+            assert!(place(joint) > place(joint - 4).min(place(joint - 3)));
+        }
     }
 }

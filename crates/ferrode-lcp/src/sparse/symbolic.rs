@@ -1,10 +1,38 @@
 //! The shape of the factor, and where the rows of each block go in it.
+//!
+//! A column is a body's acceleration or a joint's forces. A light body, one that carries nothing but up to three joints, has none: its part
+//! of the matrix is the unit matrix, so it is eliminated before all others in passing, which leaves products `J_i J_j^T` between
+//! its joints.
 
-use super::ordering::Elimination;
+use super::ordering::{Elimination, Node};
 use super::{NO_SPARSE_BODY, RowBlock};
 
 /// No block, no column, no parent.
 pub(crate) const NONE: u32 = u32::MAX;
+/// The most joints of a light body.
+const MOST_JOINTS: usize = 3;
+/// The most rows of a joint that get unknowns of their own.
+const MOST_ROWS: u32 = 6;
+
+/// Where a block of rows goes in the factor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    /// The column of the rows' forces, or [`NONE`] if the rows are folded into their bodies' blocks.
+    pub own: u32,
+    /// The columns of the bodies, [`NONE`] where there is no body or a light one.
+    pub columns: [u32; 2],
+    /// Folded: the pair's block and [`NONE`]. Otherwise the block of the joint with each of the columns.
+    pub at: [u32; 2],
+}
+
+/// Two joints at a light body, and their common block: the one eliminated later first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Coupling {
+    pub blocks: [u32; 2],
+    /// Which of its two bodies it is for each.
+    pub sides: [u8; 2],
+    pub at: u32,
+}
 
 /// The shape of the factor of one topology.
 #[derive(Clone, Debug, Default)]
@@ -12,84 +40,176 @@ pub(crate) struct Symbolic {
     /// What it was made for.
     bodies: usize,
     ends: Vec<[u32; 2]>,
-    /// Pairs of bodies that share rows: first the lower number, ascending, each once.
+    kinds: Vec<u8>,
+    /// The unknowns and the pairs of them that share a number of the matrix: these decide the order of elimination.
+    nodes: Vec<Node>,
     edges: Vec<[u32; 2]>,
-    /// The column of each body.
-    pub place: Vec<u32>,
-    /// Blocks below the diagonal, column by column: `column_start[c]..column_start[c + 1]`, rows ascending.
+    /// The column of each node.
+    place: Vec<u32>,
+    /// Numbers in each column's unknown, 3 or 6; 1 for bodies and -1 for joints, the sign of their pivots; where they start in a vector.
+    pub size: Vec<u8>,
+    pub sign: Vec<f64>,
+    pub offset: Vec<u32>,
+    /// Where the numbers of each column start: diagonal block, inverses of its diagonal, blocks below.
+    pub start: Vec<u32>,
+    /// Blocks below the diagonal, column by column: `column_start[c]..column_start[c + 1]`, rows ascending, and where their numbers are.
     pub column_start: Vec<u32>,
     pub row: Vec<u32>,
+    pub at: Vec<u32>,
     /// The same blocks row by row: in which column, and at which place of the column-wise list.
     pub row_start: Vec<u32>,
     pub row_column: Vec<u32>,
     pub row_block: Vec<u32>,
-    /// For each block of rows: the columns of its bodies, and the factor's block of the pair.
-    pub columns: Vec<[u32; 2]>,
-    pub pair: Vec<u32>,
+    /// For each block of rows.
+    pub places: Vec<Place>,
+    /// The columns of bodies; [`NONE`] for light ones.
+    pub body_column: Vec<u32>,
+    /// The joints of each light body, as blocks of rows.
+    joints: Vec<[u32; MOST_JOINTS]>,
+    pub couplings: Vec<Coupling>,
+}
+
+/// How many numbers of its own a block of rows has in the system: 0 if it is folded into its bodies' blocks. Joints have them;
+/// contacts, which come many to a pair of bodies, and limits don't.
+pub(crate) fn kind(block: &RowBlock, lo: &[f64], hi: &[f64]) -> u8 {
+    let first = block.first as usize;
+    let unbounded = block.count > 0 && lo[first] == f64::NEG_INFINITY && hi[first] == f64::INFINITY;
+    match block.count {
+        _ if !unbounded => 0,
+        0..=3 => 3,
+        4..=MOST_ROWS => 6,
+        _ => 0,
+    }
 }
 
 impl Symbolic {
-    pub fn columns_len(&self) -> usize {
-        self.bodies
-    }
-
     /// Whether this is the shape of these blocks of rows.
-    pub fn fits(&self, bodies: usize, blocks: &[RowBlock]) -> bool {
+    pub fn fits(&self, bodies: usize, blocks: &[RowBlock], lo: &[f64], hi: &[f64]) -> bool {
         self.bodies == bodies
             && self.ends.len() == blocks.len()
             && self.ends.iter().zip(blocks).all(|(ends, block)| *ends == block.bodies)
+            && self.kinds.iter().zip(blocks).all(|(have, block)| *have == kind(block, lo, hi))
     }
 
     /// Finds the shape. If only the number or order of the blocks of rows changed, the order of elimination stands.
-    pub fn update(&mut self, bodies: usize, blocks: &[RowBlock], work: &mut SymbolicWork) {
-        work.edges.clear();
-        work.edges.extend(blocks.iter().filter_map(|block| {
-            let [a, b] = block.bodies;
-            (a != NO_SPARSE_BODY && b != NO_SPARSE_BODY).then(|| [a.min(b), a.max(b)])
-        }));
-        work.edges.sort_unstable();
-        work.edges.dedup();
-        if self.bodies != bodies || self.edges != work.edges {
-            core::mem::swap(&mut self.edges, &mut work.edges);
-            self.bodies = bodies;
-            self.eliminate(work);
-        }
+    pub fn update(
+        &mut self,
+        bodies: usize,
+        blocks: &[RowBlock],
+        lo: &[f64],
+        hi: &[f64],
+        work: &mut SymbolicWork,
+    ) {
+        self.bodies = bodies;
         self.ends.clear();
         self.ends.extend(blocks.iter().map(|block| block.bodies));
-        self.columns.clear();
-        self.pair.clear();
-        for ends in &self.ends {
-            let columns = ends.map(|b| if b == NO_SPARSE_BODY { NONE } else { self.place[b as usize] });
-            let pair = if columns.contains(&NONE) {
-                NONE
+        self.kinds.clear();
+        self.kinds.extend(blocks.iter().map(|block| kind(block, lo, hi)));
+        self.find_light_bodies();
+        self.number(work);
+        work.edges.sort_unstable();
+        work.edges.dedup();
+        if self.nodes != work.nodes || self.edges != work.edges {
+            core::mem::swap(&mut self.nodes, &mut work.nodes);
+            core::mem::swap(&mut self.edges, &mut work.edges);
+            self.eliminate(work);
+        }
+        self.find_places(work);
+    }
+
+    /// Lists the joints of light bodies; the first entry of any other body's list stays [`NONE`], as does that of a body without rows.
+    fn find_light_bodies(&mut self) {
+        self.joints.clear();
+        self.joints.resize(self.bodies, [NONE; MOST_JOINTS]);
+        self.body_column.clear();
+        // Meanwhile the number of joints.
+        self.body_column.resize(self.bodies, 0);
+        for (i, (ends, kind)) in self.ends.iter().zip(&self.kinds).enumerate() {
+            for body in ends.iter().filter(|b| **b != NO_SPARSE_BODY).map(|b| *b as usize) {
+                let count = &mut self.body_column[body];
+                if *kind == 0 || *count as usize >= MOST_JOINTS {
+                    *count = NONE;
+                } else {
+                    self.joints[body][*count as usize] = i as u32;
+                    *count += 1;
+                }
+            }
+        }
+        for (joints, count) in self.joints.iter_mut().zip(&self.body_column) {
+            if *count == NONE {
+                *joints = [NONE; MOST_JOINTS];
+            }
+        }
+    }
+
+    /// Numbers the unknowns, heavy bodies first, and lists the pairs that share a number of the matrix.
+    fn number(&mut self, work: &mut SymbolicWork) {
+        let SymbolicWork { nodes, edges, of_block, .. } = work;
+        nodes.clear();
+        edges.clear();
+        of_block.clear();
+        for count in &mut self.body_column {
+            if *count == NONE {
+                *count = nodes.len() as u32;
+                nodes.push(Node::free(6));
             } else {
-                let (c, r) = (columns[0].min(columns[1]) as usize, columns[0].max(columns[1]));
-                let range = self.column_start[c] as usize..self.column_start[c + 1] as usize;
-                // The pair is an edge, so its block is there.
-                range.start as u32 + self.row[range].binary_search(&r).unwrap_or(0) as u32
+                *count = NONE;
+            }
+        }
+        for (ends, kind) in self.ends.iter().zip(&self.kinds) {
+            let of_body = |b: u32| if b == NO_SPARSE_BODY { NONE } else { self.body_column[b as usize] };
+            let bodies = ends.map(of_body);
+            if *kind == 0 {
+                of_block.push(NONE);
+                if bodies[0] != NONE && bodies[1] != NONE {
+                    edges.push([bodies[0].min(bodies[1]), bodies[0].max(bodies[1])]);
+                }
+                continue;
+            }
+            let own = nodes.len() as u32;
+            of_block.push(own);
+            edges.extend(bodies.iter().filter(|b| **b != NONE).map(|b| [*b, own]));
+            // With a light body it need not wait, nor without any.
+            let light = (0..2).any(|s| ends[s] != NO_SPARSE_BODY && bodies[s] == NONE);
+            let [a, b] = bodies;
+            let after = match (a, b) {
+                _ if light => [NONE; 2],
+                (NONE, b) => [b, b],
+                (a, NONE) => [a, a],
+                both => [both.0, both.1],
             };
-            self.columns.push(columns);
-            self.pair.push(pair);
+            nodes.push(Node { size: *kind, after });
+        }
+        for joints in &self.joints {
+            each_pair(joints, |i, j| {
+                let pair = [of_block[i as usize], of_block[j as usize]];
+                edges.push([pair[0].min(pair[1]), pair[0].max(pair[1])]);
+            });
         }
     }
 
     fn eliminate(&mut self, work: &mut SymbolicWork) {
-        let n = self.bodies;
+        let n = self.nodes.len();
         self.place.clear();
         self.place.resize(n, NONE);
-        self.column_start.clear();
+        for v in [&mut self.column_start, &mut self.row, &mut self.at, &mut self.start, &mut self.offset] {
+            v.clear();
+        }
+        self.size.clear();
+        self.sign.clear();
         self.column_start.push(0);
-        self.row.clear();
         let mut next = 0;
-        let Self { place, column_start, row, .. } = self;
-        work.elimination.run(n, &self.edges, |body, rows| {
-            place[body as usize] = next;
+        let Self { place, column_start, row, nodes, size, .. } = self;
+        work.elimination.run(nodes, &self.edges, |node, rows| {
+            place[node as usize] = next;
             next += 1;
             row.extend_from_slice(rows);
             column_start.push(row.len() as u32);
+            size.push(nodes[node as usize].size);
         });
         self.row_start.clear();
         self.row_start.resize(n + 2, 0);
+        let (mut start, mut offset) = (0, 0);
         for c in 0..n {
             let range = self.column_start[c] as usize..self.column_start[c + 1] as usize;
             let rows = &mut self.row[range];
@@ -98,7 +218,18 @@ impl Symbolic {
                 self.row_start[*r as usize + 2] += 1;
             }
             rows.sort_unstable();
+            let width = u32::from(self.size[c]);
+            self.offset.push(offset);
+            self.start.push(start);
+            offset += width;
+            start += width * width + width;
+            for r in rows {
+                self.at.push(start);
+                start += width * u32::from(self.size[*r as usize]);
+            }
         }
+        self.offset.push(offset);
+        self.start.push(start);
         for r in 2..n + 2 {
             self.row_start[r] += self.row_start[r - 1];
         }
@@ -116,15 +247,92 @@ impl Symbolic {
         }
     }
 
+    fn find_places(&mut self, work: &SymbolicWork) {
+        self.places.clear();
+        self.couplings.clear();
+        for column in self.body_column.iter_mut().filter(|column| **column != NONE) {
+            *column = self.place[*column as usize];
+        }
+        self.sign.resize(self.nodes.len(), 1.0);
+        for (ends, node) in self.ends.iter().zip(&work.of_block) {
+            let of_body = |b: u32| if b == NO_SPARSE_BODY { NONE } else { self.body_column[b as usize] };
+            let columns = ends.map(of_body);
+            let place = if *node == NONE {
+                Place { own: NONE, columns, at: [self.block(columns[0], columns[1]), NONE] }
+            } else {
+                let own = self.place[*node as usize];
+                self.sign[own as usize] = -1.0;
+                Place { own, columns, at: columns.map(|c| self.block(c, own)) }
+            };
+            self.places.push(place);
+        }
+        let mut couplings = core::mem::take(&mut self.couplings);
+        for (body, joints) in self.joints.iter().enumerate() {
+            each_pair(joints, |i, j| {
+                let [a, b] = [i, j].map(|i| self.places[i as usize].own);
+                let blocks = if a > b { [i, j] } else { [j, i] };
+                let sides = blocks.map(|i| u8::from(self.ends[i as usize][1] as usize == body));
+                couplings.push(Coupling { blocks, sides, at: self.block(a, b) });
+            });
+        }
+        self.couplings = couplings;
+    }
+
+    /// The place in the list of blocks of the block of two columns; [`NONE`] if one of them is.
+    fn block(&self, a: u32, b: u32) -> u32 {
+        if a == NONE || b == NONE {
+            return NONE;
+        }
+        let (c, r) = (a.min(b) as usize, a.max(b));
+        let range = self.column_start[c] as usize..self.column_start[c + 1] as usize;
+        // The pair is an edge, so its block is there.
+        range.start as u32 + self.row[range].binary_search(&r).unwrap_or(0) as u32
+    }
+
+    /// Calls `f` with columns such that all numbers that the rows of a block enter into are in these and the columns to the root.
+    pub fn for_each_touched(&self, block: usize, mut f: impl FnMut(u32)) {
+        let place = &self.places[block];
+        for (column, body) in place.columns.iter().zip(self.ends[block]) {
+            if *column != NONE {
+                f(*column);
+            } else if body != NO_SPARSE_BODY {
+                let joints = self.joints[body as usize].iter().filter(|j| **j != NONE);
+                joints.for_each(|j| f(self.places[*j as usize].own));
+            }
+        }
+        if place.own != NONE {
+            f(place.own);
+        }
+    }
+
     /// The column that a column's elimination touches first, its parent in the elimination tree.
     pub fn parent(&self, column: usize) -> Option<usize> {
         let range = self.column_start[column] as usize..self.column_start[column + 1] as usize;
         self.row[range].first().map(|r| *r as usize)
     }
 
+    pub fn bodies(&self) -> usize {
+        self.bodies
+    }
+
+    pub fn columns(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Numbers in the factor.
+    pub fn numbers(&self) -> usize {
+        self.start.last().map_or(0, |n| *n as usize)
+    }
+
     /// Blocks of the factor, the diagonal included.
     pub fn blocks(&self) -> usize {
-        self.bodies + self.row.len()
+        self.nodes.len() + self.row.len()
+    }
+}
+
+fn each_pair(joints: &[u32; MOST_JOINTS], mut f: impl FnMut(u32, u32)) {
+    for (i, a) in joints.iter().enumerate().filter(|(_, a)| **a != NONE) {
+        joints[i + 1..].iter().filter(|b| **b != NONE).for_each(|b| f(*a, *b));
     }
 }
 
@@ -132,7 +340,10 @@ impl Symbolic {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SymbolicWork {
     elimination: Elimination,
+    nodes: Vec<Node>,
     edges: Vec<[u32; 2]>,
+    /// The node of each block of rows.
+    of_block: Vec<u32>,
 }
 
 /// Shapes that were found, each under a number of the caller's.
@@ -149,16 +360,23 @@ const MOST_SHAPES: usize = 1024;
 impl SymbolicCache {
     /// The shape of these blocks of rows: the one used last if it fits (equal robots come one after the other), or the one under
     /// `hint`, brought up to date.
-    pub fn get(&mut self, hint: usize, bodies: usize, blocks: &[RowBlock]) -> &Symbolic {
-        let fits = self.shapes.get(self.last).is_some_and(|shape| shape.fits(bodies, blocks));
+    pub fn get(
+        &mut self,
+        hint: usize,
+        bodies: usize,
+        blocks: &[RowBlock],
+        lo: &[f64],
+        hi: &[f64],
+    ) -> &Symbolic {
+        let fits = self.shapes.get(self.last).is_some_and(|shape| shape.fits(bodies, blocks, lo, hi));
         if !fits {
             self.last = hint % MOST_SHAPES;
             if self.shapes.len() <= self.last {
                 self.shapes.resize_with(self.last + 1, Symbolic::default);
             }
             let shape = &mut self.shapes[self.last];
-            if !shape.fits(bodies, blocks) {
-                shape.update(bodies, blocks, &mut self.work);
+            if !shape.fits(bodies, blocks, lo, hi) {
+                shape.update(bodies, blocks, lo, hi, &mut self.work);
             }
         }
         &self.shapes[self.last]

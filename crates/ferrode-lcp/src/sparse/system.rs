@@ -1,28 +1,29 @@
 //! The rows of a problem, and solves with the rows of a given set held exactly.
 //!
 //! A row is either free (its force is unknown, its equation `J y + S lambda = r` holds) or its force is given. For one choice, with `F`
-//! the free rows,
+//! the free rows that are folded into their bodies' blocks and `G` the others,
 //!
 //! ```text
-//!     H = 1 + J_F^T S_F^-1 J_F
-//!     residuals     g = J^T lambda - y          e_F = r_F - J_F y - S_F lambda_F
-//!     correction    H dy = g + J_F^T S_F^-1 e_F      dlambda_F = S_F^-1 (e_F - J_F dy)
+//!     residuals     g = J^T lambda - y          e = r - J y - S lambda
+//!     correction    [ 1 + J_F^T S_F^-1 J_F    J_G^T ] [   dy       ]   [ g + J_F^T S_F^-1 e_F ]
+//!                   [ J_G                    -S_G   ] [ -dlambda_G ] = [ e_G                  ]      dlambda_F = S_F^-1 (e_F - J_F dy)
 //! ```
 //!
 //! From `y = 0`, `lambda_F = 0` the first correction is the solution, and each further one a step of iterative refinement in the full
-//! system: the residuals are computed from the rows themselves, so what the stiff `H` lost to rounding comes back.
+//! system: the residuals are computed from the rows themselves, so what the stiff matrix lost to rounding comes back.
 //! (Å. Björck, "Iterative refinement and reliable computing", 1990.)
 
 use super::factor::Factor;
-use super::kernel6::{self, Six};
-use super::symbolic::{NONE, Symbolic};
-use super::{RowBlock, ScaledRow};
+use super::kernels::{self, Six, by_sizes};
+use super::symbolic::{NONE, Place, Symbolic};
+use super::{NO_SPARSE_BODY, RowBlock, ScaledRow};
 use crate::pivoting::RowState;
 
 /// A row with less CFM than this part of its diagonal gets more, made good by proximal steps.
 pub(crate) const LEAST_SIGMA: f64 = 1e-10;
-/// Refinement ends when the error that is to be expected is below this part of the largest force: while rows are still being
-/// sorted, and at the end.
+/// Refinement ends when the error to be expected of the accelerations is below this part of the largest that a force causes: while rows
+/// are still being sorted, and at the end. (Forces are no measure: rounding of the residuals, divided by a small CFM, moves redundant ones
+/// by more than any correction, and to no effect.)
 const ROUGH: f64 = 1e-12;
 const FINE: f64 = 1e-15;
 const MOST_CORRECTIONS: usize = 8;
@@ -37,28 +38,34 @@ pub(crate) struct System {
     pub diagonal: Vec<f64>,
     /// The right-hand side in force: the given one, plus what the proximal step adds.
     pub rhs: Vec<f64>,
-    /// The forces and the accelerations that they cause, the latter by column of the factor.
+    /// The forces and the accelerations that they cause, the latter by body.
     pub lambda: Vec<f64>,
     pub y: Vec<Six>,
     /// `J y`, brought up to date by [`System::product`] and [`System::correct`].
     pub jy: Vec<f64>,
     error: Vec<f64>,
     pub dy: Vec<Six>,
+    dlambda: Vec<f64>,
+    /// Right-hand side and solution by columns.
+    z: Vec<f64>,
     pub factor: Factor,
-    /// Largest change of a force in the last correction, and its ratio to the one before.
+    /// Largest change of an acceleration in the last correction, and its ratio to the one before.
     change: f64,
     rate: f64,
-    /// Per row what it weighs in `H`: `1 / S`, or 0 for a row whose force is given.
+    /// The largest acceleration that a single force causes.
+    scale: f64,
+    /// Per row what it weighs in the matrix: `1 / S`, or 0 for a row whose force is given.
     pub weight: Vec<f64>,
     /// Whether some row's CFM was raised.
     pub raised: bool,
 }
 
 impl System {
-    /// Takes the rows in. `columns` is the number of bodies.
+    /// Takes the rows in.
     pub fn load(&mut self, jacobian: &[ScaledRow], sigma: &[f64], rhs: &[f64], shape: &Symbolic) {
-        let (m, n) = (jacobian.len(), shape.columns_len());
-        for v in [&mut self.lambda, &mut self.jy, &mut self.error] {
+        let (m, n) = (jacobian.len(), shape.bodies());
+        self.z.resize(shape.offset.last().map_or(0, |n| *n as usize), 0.0);
+        for v in [&mut self.lambda, &mut self.jy, &mut self.error, &mut self.dlambda] {
             v.clear();
             v.resize(m, 0.0);
         }
@@ -76,7 +83,7 @@ impl System {
         self.raised = false;
         self.weight.clear();
         for (row, sigma) in jacobian.iter().zip(sigma) {
-            let diagonal = kernel6::dot(&row[0], &row[0]) + kernel6::dot(&row[1], &row[1]) + sigma;
+            let diagonal = kernels::dot(&row[0], &row[0]) + kernels::dot(&row[1], &row[1]) + sigma;
             let least = LEAST_SIGMA * diagonal;
             let used = if *sigma < least { least } else { *sigma };
             self.raised |= used != *sigma;
@@ -117,58 +124,185 @@ impl System {
         rho: &[f64],
         x: &mut [f64],
     ) {
-        for (x, (rho, weight)) in x.iter_mut().zip(rho.iter().zip(&self.weight)) {
-            *x = rho * weight;
-        }
         self.dy.fill([0.0; 6]);
-        multiply_transposed(blocks, jacobian, shape, x, &mut self.dy);
-        self.factor.solve(shape, &mut self.dy);
-        multiply(blocks, jacobian, shape, &self.dy, &mut self.error);
-        for (row, x) in x.iter_mut().enumerate() {
-            *x = (rho[row] - self.error[row]) * self.weight[row];
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
+            for row in block.range() {
+                if place.own == NONE {
+                    let force = rho[row] * self.weight[row];
+                    kernels::add_scaled(&mut a, force, &jacobian[row][0]);
+                    kernels::add_scaled(&mut b, force, &jacobian[row][1]);
+                } else {
+                    self.dlambda[row] = if self.weight[row] == 0.0 { 0.0 } else { rho[row] };
+                }
+            }
+            if place.own == NONE {
+                add_to_bodies(&mut self.dy, block, &a, &b);
+            }
+        }
+        self.solve_factored(blocks, jacobian, shape);
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            let [a, b] = of_bodies(&self.dy, block);
+            for row in block.range() {
+                x[row] = if place.own == NONE {
+                    let j = &jacobian[row];
+                    (rho[row] - (kernels::dot(&j[0], &a) + kernels::dot(&j[1], &b))) * self.weight[row]
+                } else {
+                    self.dlambda[row]
+                };
+            }
         }
     }
 
+    /// Adds the blocks of the rows that have a weight to the stale columns, and factors them.
     fn add_and_factorise(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
         self.factor.clear_stale(shape);
-        for (block, (columns, pair)) in blocks.iter().zip(shape.columns.iter().zip(&shape.pair)) {
-            let stale = columns.map(|c| self.factor.is_stale(c));
-            if !stale[0] && !stale[1] {
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            if place.own == NONE {
+                self.add_folded(block, jacobian, place, shape);
+            } else {
+                self.add_joint(block, jacobian, place, shape);
+            }
+        }
+        for coupling in &shape.couplings {
+            let [later, earlier] = coupling.blocks.map(|i| i as usize);
+            if !self.factor.is_stale(shape.places[earlier].own) {
                 continue;
             }
-            let (mut a, mut b, mut across) = ([0.0; 36], [0.0; 36], [0.0; 36]);
-            let mut any = false;
-            // The pair's block stands in the column of the body that is eliminated first.
-            let (low, high) = if columns[0] < columns[1] { (0, 1) } else { (1, 0) };
-            for row in block.range() {
-                let (s, j) = (self.weight[row], &jacobian[row]);
-                if s == 0.0 {
+            let height = shape.size[shape.places[later].own as usize];
+            let out = &mut self.factor.values[shape.at[coupling.at as usize] as usize..];
+            let [rows, cols] = [later, earlier].map(|i| blocks[i].range());
+            let [s, t] = coupling.sides.map(usize::from);
+            let rows = (&jacobian[rows.clone()], &self.weight[rows], s);
+            let cols = (&jacobian[cols.clone()], &self.weight[cols], t);
+            by_sizes!(sub_product, [height], (out, rows, cols));
+        }
+        self.factor.factorise(shape);
+    }
+
+    /// `J^T S^-1 J` of rows without unknowns of their own.
+    fn add_folded(&mut self, block: &RowBlock, jacobian: &[ScaledRow], place: &Place, shape: &Symbolic) {
+        let (columns, pair) = (place.columns, place.at[0]);
+        let stale = columns.map(|c| self.factor.is_stale(c));
+        if !stale[0] && !stale[1] {
+            return;
+        }
+        let (mut a, mut b, mut across) = ([0.0; 36], [0.0; 36], [0.0; 36]);
+        let mut any = false;
+        // The pair's block stands in the column of the body that is eliminated first.
+        let (low, high) = if columns[0] < columns[1] { (0, 1) } else { (1, 0) };
+        for row in block.range() {
+            let (s, j) = (self.weight[row], &jacobian[row]);
+            if s == 0.0 {
+                continue;
+            }
+            any = true;
+            if stale[0] {
+                kernels::add_outer(&mut a, s, &j[0], &j[0]);
+            }
+            if stale[1] {
+                kernels::add_outer(&mut b, s, &j[1], &j[1]);
+            }
+            if pair != NONE && stale[low] {
+                kernels::add_outer(&mut across, s, &j[high], &j[low]);
+            }
+        }
+        if any {
+            if stale[0] {
+                self.factor.add_diagonal(columns[0], shape, &a);
+            }
+            if stale[1] {
+                self.factor.add_diagonal(columns[1], shape, &b);
+            }
+            if pair != NONE && stale[low] {
+                self.factor.add_below(pair, shape, &across);
+            }
+        }
+    }
+
+    /// `-S` of a joint, `J` between it and its bodies; of light bodies, which are eliminated already, `-J J^T`.
+    fn add_joint(&mut self, block: &RowBlock, jacobian: &[ScaledRow], place: &Place, shape: &Symbolic) {
+        let own = place.own as usize;
+        let width = usize::from(shape.size[own]);
+        let range = block.range();
+        let (rows, weight) = (&jacobian[range.clone()], &self.weight[range]);
+        if self.factor.is_stale(place.own) {
+            let diagonal = &mut self.factor.values[shape.start[own] as usize..];
+            for (c, weight) in weight.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+                // A row without a weight keeps the -1 that stands there.
+                diagonal[(width + 1) * c] = -1.0 / weight;
+            }
+            for (s, _) in light_sides(block, place) {
+                let rows = (rows, weight, s);
+                by_sizes!(sub_product, [width], (diagonal, rows, rows));
+            }
+        }
+        for (s, column) in place.columns.into_iter().enumerate() {
+            if column == NONE || !self.factor.is_stale(column.min(place.own)) {
+                continue;
+            }
+            let values = &mut self.factor.values[shape.at[place.at[s] as usize] as usize..];
+            for (r, (row, weight)) in rows.iter().zip(weight).enumerate() {
+                if *weight == 0.0 {
                     continue;
                 }
-                any = true;
-                if stale[0] {
-                    kernel6::add_outer(&mut a, s, &j[0], &j[0]);
-                }
-                if stale[1] {
-                    kernel6::add_outer(&mut b, s, &j[1], &j[1]);
-                }
-                if *pair != NONE && stale[low] {
-                    kernel6::add_outer(&mut across, s, &j[high], &j[low]);
-                }
-            }
-            if any {
-                if stale[0] {
-                    self.factor.add_diagonal(columns[0], &a);
-                }
-                if stale[1] {
-                    self.factor.add_diagonal(columns[1], &b);
-                }
-                if *pair != NONE && stale[low] {
-                    self.factor.add_below(*pair, &across);
+                for (c, x) in row[s].iter().enumerate() {
+                    // By columns: the one eliminated first.
+                    let at = if column < place.own { width * c + r } else { 6 * r + c };
+                    values[at] += x;
                 }
             }
         }
-        self.factor.factorise(shape);
+    }
+
+    /// Solves with the factor: `dy` holds the right-hand side of the bodies and becomes their part of the solution, `dlambda` that of
+    /// the rows with unknowns of their own.
+    fn solve_factored(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
+        let z = &mut self.z;
+        for (dy, column) in self.dy.iter().zip(&shape.body_column) {
+            if *column != NONE {
+                let at = shape.offset[*column as usize] as usize;
+                z[at..at + 6].copy_from_slice(dy);
+            }
+        }
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            if place.own == NONE {
+                continue;
+            }
+            let own = place.own as usize;
+            let z = &mut z[shape.offset[own] as usize..shape.offset[own + 1] as usize];
+            z.fill(0.0);
+            let [a, b] = light_bodies(&self.dy, block, place);
+            for (z, row) in z.iter_mut().zip(block.range()) {
+                if self.weight[row] != 0.0 {
+                    let j = &jacobian[row];
+                    *z = self.dlambda[row] - (kernels::dot(&j[0], &a) + kernels::dot(&j[1], &b));
+                }
+            }
+        }
+        self.factor.solve(shape, z);
+        for (dy, column) in self.dy.iter_mut().zip(&shape.body_column) {
+            if *column != NONE {
+                let at = shape.offset[*column as usize] as usize;
+                dy.copy_from_slice(&z[at..at + 6]);
+            }
+        }
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            if place.own == NONE {
+                continue;
+            }
+            let z = &z[shape.offset[place.own as usize] as usize..];
+            let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
+            for (z, row) in z.iter().zip(block.range()) {
+                let force = if self.weight[row] == 0.0 { 0.0 } else { -z };
+                self.dlambda[row] = force;
+                kernels::add_scaled(&mut a, force, &jacobian[row][0]);
+                kernels::add_scaled(&mut b, force, &jacobian[row][1]);
+            }
+            for (s, body) in light_sides(block, place) {
+                kernels::add_scaled(&mut self.dy[body], 1.0, if s == 0 { &a } else { &b });
+            }
+        }
     }
 
     /// Solves for the free rows with the forces of the others as they stand in `lambda`. Returns the largest force.
@@ -180,18 +314,23 @@ impl System {
         shape: &Symbolic,
     ) -> f64 {
         self.y.fill([0.0; 6]);
-        let mut largest_given: f64 = 0.0;
         for (lambda, state) in self.lambda.iter_mut().zip(state) {
             if *state == RowState::Free {
                 *lambda = 0.0;
-            } else if lambda.abs() > largest_given {
-                largest_given = lambda.abs();
             }
         }
-        let first = self.correct(blocks, jacobian, state, shape, true);
-        let largest = if first > largest_given { first } else { largest_given };
-        (self.change, self.rate) = (first, 1.0);
-        self.refine(blocks, jacobian, state, shape, ROUGH * largest);
+        (self.change, self.rate) = (self.correct(blocks, jacobian, state, shape, true), 1.0);
+        self.apply();
+        let (mut largest, mut strongest): (f64, f64) = (0.0, 0.0);
+        for (lambda, diagonal) in self.lambda.iter().zip(&self.diagonal) {
+            if lambda.abs() > largest || lambda.is_nan() {
+                largest = lambda.abs();
+            }
+            let square = lambda * lambda * diagonal;
+            strongest = if square > strongest { square } else { strongest };
+        }
+        self.scale = strongest.sqrt();
+        self.refine(blocks, jacobian, state, shape, ROUGH * self.scale);
         largest
     }
 
@@ -202,9 +341,8 @@ impl System {
         jacobian: &[ScaledRow],
         state: &[RowState],
         shape: &Symbolic,
-        largest: f64,
     ) {
-        self.refine(blocks, jacobian, state, shape, FINE * largest);
+        self.refine(blocks, jacobian, state, shape, FINE * self.scale);
     }
 
     /// Corrects until the error to be expected, which shrinks by the same factor each time, is below `goal`, or rounding stops it.
@@ -225,13 +363,15 @@ impl System {
             self.change = change;
             let falls = self.rate < 0.5;
             if !falls {
+                // Rounding is all that is left of it.
                 self.rate = 0.0;
                 break;
             }
+            self.apply();
         }
     }
 
-    /// One correction. Returns the largest change of a force.
+    /// Finds one correction. Returns the largest change of an acceleration.
     fn correct(
         &mut self,
         blocks: &[RowBlock],
@@ -243,97 +383,153 @@ impl System {
         for (dy, y) in self.dy.iter_mut().zip(&self.y) {
             *dy = y.map(|y| -y);
         }
-        for (block, columns) in blocks.iter().zip(&shape.columns) {
-            let [ya, yb] = columns.map(|c| if c == NONE { [0.0; 6] } else { self.y[c as usize] });
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            let [ya, yb] = if first { [[0.0; 6]; 2] } else { of_bodies(&self.y, block) };
             let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
             for row in block.range() {
                 let j = &jacobian[row];
                 let mut force = self.lambda[row];
                 if state[row] == RowState::Free {
-                    let jy = if first { 0.0 } else { kernel6::dot(&j[0], &ya) + kernel6::dot(&j[1], &yb) };
+                    let jy = if first { 0.0 } else { kernels::dot(&j[0], &ya) + kernels::dot(&j[1], &yb) };
                     let error = self.rhs[row] - jy - self.used_sigma[row] * force;
                     self.error[row] = error;
-                    force += error * self.inverse_sigma[row];
-                }
-                kernel6::add_scaled(&mut a, force, &j[0]);
-                kernel6::add_scaled(&mut b, force, &j[1]);
-            }
-            for (c, sum) in [(columns[0], &a), (columns[1], &b)] {
-                if c != NONE {
-                    kernel6::add_scaled(&mut self.dy[c as usize], 1.0, sum);
-                }
-            }
-        }
-        self.factor.solve(shape, &mut self.dy);
-        for (y, dy) in self.y.iter_mut().zip(&self.dy) {
-            kernel6::add_scaled(y, 1.0, dy);
-        }
-        let mut largest: f64 = 0.0;
-        for (block, columns) in blocks.iter().zip(&shape.columns) {
-            let [da, db] = columns.map(|c| if c == NONE { [0.0; 6] } else { self.dy[c as usize] });
-            for row in block.range() {
-                if state[row] == RowState::Free {
-                    let j = &jacobian[row];
-                    let jdy = kernel6::dot(&j[0], &da) + kernel6::dot(&j[1], &db);
-                    let change = (self.error[row] - jdy) * self.inverse_sigma[row];
-                    self.lambda[row] += change;
-                    if change.abs() > largest || change.is_nan() {
-                        largest = change.abs();
+                    if place.own == NONE {
+                        force += error * self.inverse_sigma[row];
+                    } else {
+                        self.dlambda[row] = error;
                     }
                 }
+                kernels::add_scaled(&mut a, force, &j[0]);
+                kernels::add_scaled(&mut b, force, &j[1]);
+            }
+            add_to_bodies(&mut self.dy, block, &a, &b);
+        }
+        self.solve_factored(blocks, jacobian, shape);
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            if place.own == NONE {
+                let [da, db] = of_bodies(&self.dy, block);
+                for row in block.range() {
+                    self.dlambda[row] = 0.0;
+                    if state[row] == RowState::Free {
+                        let j = &jacobian[row];
+                        let jdy = kernels::dot(&j[0], &da) + kernels::dot(&j[1], &db);
+                        self.dlambda[row] = (self.error[row] - jdy) * self.inverse_sigma[row];
+                    }
+                }
+            }
+        }
+        let mut largest: f64 = 0.0;
+        for dy in self.dy.as_flattened() {
+            if dy.abs() > largest || dy.is_nan() {
+                largest = dy.abs();
             }
         }
         largest
     }
 
+    /// Makes the correction that was found last.
+    fn apply(&mut self) {
+        for (y, dy) in self.y.iter_mut().zip(&self.dy) {
+            kernels::add_scaled(y, 1.0, dy);
+        }
+        for (lambda, change) in self.lambda.iter_mut().zip(&self.dlambda) {
+            *lambda += change;
+        }
+    }
+
     /// Sets `jy` to `J y`.
-    pub fn product(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
-        multiply(blocks, jacobian, shape, &self.y, &mut self.jy);
+    pub fn product(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow]) {
+        multiply(blocks, jacobian, &self.y, &mut self.jy);
     }
 
     /// Sets `y` to `J^T lambda` and `jy` to `J y`, from the forces alone.
-    pub fn accelerations(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
+    pub fn accelerations(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow]) {
         self.y.fill([0.0; 6]);
-        multiply_transposed(blocks, jacobian, shape, &self.lambda, &mut self.y);
-        self.product(blocks, jacobian, shape);
+        multiply_transposed(blocks, jacobian, &self.lambda, &mut self.y);
+        self.product(blocks, jacobian);
     }
 }
 
 /// `out += J^T x`.
-fn multiply_transposed(
-    blocks: &[RowBlock],
-    jacobian: &[ScaledRow],
-    shape: &Symbolic,
-    x: &[f64],
-    out: &mut [Six],
-) {
-    for (block, columns) in blocks.iter().zip(&shape.columns) {
+fn multiply_transposed(blocks: &[RowBlock], jacobian: &[ScaledRow], x: &[f64], out: &mut [Six]) {
+    for block in blocks {
         let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
         for row in block.range() {
-            kernel6::add_scaled(&mut a, x[row], &jacobian[row][0]);
-            kernel6::add_scaled(&mut b, x[row], &jacobian[row][1]);
+            kernels::add_scaled(&mut a, x[row], &jacobian[row][0]);
+            kernels::add_scaled(&mut b, x[row], &jacobian[row][1]);
         }
-        for (c, sum) in [(columns[0], &a), (columns[1], &b)] {
-            if c != NONE {
-                kernel6::add_scaled(&mut out[c as usize], 1.0, sum);
+        add_to_bodies(out, block, &a, &b);
+    }
+}
+
+/// `out = J y`.
+pub(crate) fn multiply(blocks: &[RowBlock], jacobian: &[ScaledRow], y: &[Six], out: &mut [f64]) {
+    for block in blocks {
+        let [ya, yb] = of_bodies(y, block);
+        for row in block.range() {
+            let j = &jacobian[row];
+            out[row] = kernels::dot(&j[0], &ya) + kernels::dot(&j[1], &yb);
+        }
+    }
+}
+
+/// What `y` holds for the bodies of a block; zero where there is none.
+#[inline(always)]
+fn of_bodies(y: &[Six], block: &RowBlock) -> [Six; 2] {
+    block.bodies.map(|b| if b == NO_SPARSE_BODY { [0.0; 6] } else { y[b as usize] })
+}
+
+/// The bodies of a joint that have no column, each with its side.
+#[inline(always)]
+fn light_sides(block: &RowBlock, place: &Place) -> impl Iterator<Item = (usize, usize)> {
+    let sides = block.bodies.into_iter().zip(place.columns).enumerate();
+    sides
+        .filter(|(_, (body, column))| *column == NONE && *body != NO_SPARSE_BODY)
+        .map(|(s, (body, _))| (s, body as usize))
+}
+
+/// What `y` holds for those bodies of a joint that have no column, else 0.
+#[inline(always)]
+fn light_bodies(y: &[Six], block: &RowBlock, place: &Place) -> [Six; 2] {
+    let mut out = [[0.0; 6]; 2];
+    light_sides(block, place).for_each(|(s, body)| out[s] = y[body]);
+    out
+}
+
+/// Rows with their weights, seen from one of their two bodies.
+type Side<'a> = (&'a [ScaledRow], &'a [f64], usize);
+
+/// `out -= A B^T` for rows `A` and `B` of the same body, without those that have no weight; `out` has `H` rows.
+#[inline(always)]
+fn sub_product<const H: usize>(out: &mut [f64], (a, a_weight, s): Side<'_>, (b, b_weight, t): Side<'_>) {
+    let mut transposed = [[0.0; H]; 6];
+    for (r, (row, weight)) in a.iter().zip(a_weight).enumerate() {
+        if *weight != 0.0 {
+            for q in 0..6 {
+                transposed[q][r] = row[s][q];
+            }
+        }
+    }
+    for (out, (row, weight)) in out.chunks_exact_mut(H).zip(b.iter().zip(b_weight)) {
+        if *weight != 0.0 {
+            let mut sum = [0.0; H];
+            for q in 0..6 {
+                for r in 0..H {
+                    sum[r] += transposed[q][r] * row[t][q];
+                }
+            }
+            for r in 0..H {
+                out[r] -= sum[r];
             }
         }
     }
 }
 
-/// `out = J y`.
-pub(crate) fn multiply(
-    blocks: &[RowBlock],
-    jacobian: &[ScaledRow],
-    shape: &Symbolic,
-    y: &[Six],
-    out: &mut [f64],
-) {
-    for (block, columns) in blocks.iter().zip(&shape.columns) {
-        let [ya, yb] = columns.map(|c| if c == NONE { [0.0; 6] } else { y[c as usize] });
-        for row in block.range() {
-            let j = &jacobian[row];
-            out[row] = kernel6::dot(&j[0], &ya) + kernel6::dot(&j[1], &yb);
+#[inline(always)]
+fn add_to_bodies(y: &mut [Six], block: &RowBlock, a: &Six, b: &Six) {
+    for (body, sum) in block.bodies.into_iter().zip([a, b]) {
+        if body != NO_SPARSE_BODY {
+            kernels::add_scaled(&mut y[body as usize], 1.0, sum);
         }
     }
 }
