@@ -33,6 +33,7 @@ mod frame;
 mod geom;
 pub mod manifold;
 pub mod narrow;
+pub mod pairs;
 pub mod query;
 pub mod shape;
 pub mod space;

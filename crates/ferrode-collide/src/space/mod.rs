@@ -5,8 +5,8 @@
 //! the order of contacts decides what `Quick` computes.
 
 mod bvh;
-mod dynamic_tree;
-mod f32_box;
+pub(crate) mod dynamic_tree;
+pub(crate) mod f32_box;
 mod hash;
 mod pair_nodes;
 mod probe;

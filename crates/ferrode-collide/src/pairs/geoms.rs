@@ -1,0 +1,135 @@
+//! What the cache knows of a geom.
+
+use crate::space::f32_box::Box32;
+use crate::{Frame, Shape};
+use ferrode_math::{Aabb, Vec3};
+
+/// Who moves a geom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Nobody, or the caller by hand: contacts do not. Two such geoms make no pair.
+    Fixed,
+    /// It may be moved by contacts, but rests.
+    Asleep,
+    /// It may be moved by contacts.
+    Awake,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct GeomState {
+    pub shape: Shape,
+    pub frame: Frame,
+    /// Metres that any point of it can have moved, ever.
+    pub odometer: f64,
+    /// No look at the box until [`spent`](Self::spent) is beyond this.
+    pub leaf_limit: f64,
+    /// Distance of the furthest point from the frame's origin.
+    pub reach: f64,
+    /// The update before which it moved last.
+    pub moved: u32,
+    /// The update in which its leaf changed last.
+    pub leaf_changed: u32,
+    pub ahead: f32,
+    pub motion: Motion,
+    pub bounded: bool,
+}
+
+impl GeomState {
+    pub fn new(shape: Shape, frame: &Frame, motion: Motion) -> Self {
+        let own = shape.aabb_in(&Frame::IDENTITY);
+        let bounded = own.is_finite() && !matches!(shape, Shape::Plane(_));
+        let reach = if bounded { own.max.max(-own.min).length() } else { f64::INFINITY };
+        Self {
+            shape,
+            frame: *frame,
+            odometer: 0.0,
+            leaf_limit: f64::NEG_INFINITY,
+            reach,
+            moved: 0,
+            leaf_changed: 0,
+            ahead: 0.0,
+            motion,
+            bounded,
+        }
+    }
+
+    #[inline]
+    pub fn awake(&self) -> bool {
+        self.motion == Motion::Awake
+    }
+
+    /// The odometer, and what it looks ahead: what grows by either may come nearer than was known.
+    #[inline]
+    pub fn spent(&self) -> f64 {
+        self.odometer + f64::from(self.ahead)
+    }
+
+    /// Goes to another place; false if that is none, or the same.
+    #[inline]
+    pub fn go(&mut self, frame: &Frame) -> bool {
+        let shift = (frame.position - self.frame.position).length_squared();
+        let mut turn = 0.0;
+        for (r, s) in frame.rotation.rows.iter().zip(&self.frame.rotation.rows) {
+            for (x, y) in r.iter().zip(s) {
+                turn += (x - y) * (x - y);
+            }
+        }
+        // The chord of the angle is the norm of the matrices' difference over √2.
+        let by = shift.sqrt() + if turn > 0.0 { (0.5 * turn).sqrt() * self.reach } else { 0.0 };
+        if by.is_nan() || by == 0.0 || !(shift + turn).is_finite() {
+            return false;
+        }
+        self.frame = *frame;
+        if by.is_finite() {
+            self.odometer += by;
+        }
+        true
+    }
+
+    /// The box around it, larger by what pairs look ahead.
+    pub fn around(&self, margin: f64) -> Aabb {
+        self.shape.aabb_in(&self.frame).expanded(0.5 * margin + f64::from(self.ahead))
+    }
+
+    /// A leaf for the box, and how far the geom may move until it can leave it.
+    pub fn leaf(&self, around: &Aabb, fat: f64, old: Option<Box32>) -> (Box32, f64) {
+        if self.motion == Motion::Fixed {
+            return (Box32::around(around), 0.0);
+        }
+        let e = around.extent();
+        let room = fat * e.x.max(e.y).max(e.z);
+        let mut leaf = around.expanded(room);
+        if let Some(old) = old {
+            // What left its leaf goes on that way; what jumped does not.
+            let center = Vec3::new(old.center2(0).into(), old.center2(1).into(), old.center2(2).into()) * 0.5;
+            let ahead = around.center() - center;
+            if ahead.abs_max() < e.abs_max() {
+                leaf.min += ahead.min(Vec3::ZERO);
+                leaf.max += ahead.max(Vec3::ZERO);
+            }
+        }
+        (Box32::around(&leaf), room)
+    }
+
+    /// Whether an unbounded geom comes near a box.
+    pub fn meets(&self, leaf: &Box32) -> bool {
+        match &self.shape {
+            Shape::Plane(plane) => {
+                let (b, n) = (leaf.aabb(), plane.normal());
+                let lowest = Vec3::new(
+                    if n.x > 0.0 { b.min.x } else { b.max.x },
+                    if n.y > 0.0 { b.min.y } else { b.max.y },
+                    if n.z > 0.0 { b.min.z } else { b.max.z },
+                );
+                plane.depth(lowest) >= -f64::from(self.ahead)
+            }
+            shape => shape.aabb_in(&self.frame).overlaps(&leaf.aabb()),
+        }
+    }
+
+    /// Whether it is the first geom of a pair with `other`: the smaller one; its anchors are in single precision.
+    pub fn before(&self, other: &Self) -> bool {
+        let surface = |s: &Shape| u8::from(matches!(s, Shape::TriMesh(_) | Shape::Heightfield(_)));
+        (surface(&self.shape), self.reach) < (surface(&other.shape), other.reach)
+    }
+}
