@@ -11,6 +11,13 @@ if command -v apt-get >/dev/null && ! { [ -e /usr/include/ode/ode.h ] && command
     echo "note: libode-dev and compilers could not be installed; what needs them will be skipped"
 fi
 
+# Pictures are drawn in software where there is no graphics card; windows are opened in a virtual display.
+if command -v apt-get >/dev/null && ! { ls /usr/share/vulkan/icd.d/lvp_icd.* >/dev/null 2>&1 && command -v Xvfb >/dev/null; }; then
+  if [ "$(id -u)" = 0 ]; then as_root=(); else as_root=(sudo -n); fi
+  "${as_root[@]}" apt-get update -qq && "${as_root[@]}" apt-get install -y -qq mesa-vulkan-drivers xvfb >/dev/null ||
+    echo "note: mesa-vulkan-drivers and xvfb could not be installed; tests of pictures will be skipped"
+fi
+
 # Extra worlds and recorded figures lie beside the checkout where the project is developed.
 for pair in FERRODE_WORLDS:../shared/worlds FERRODE_SPEC:../shared/spec; do
   name=${pair%%:*} folder=${pair#*:}

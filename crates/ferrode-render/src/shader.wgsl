@@ -1,0 +1,289 @@
+// Light, shadow, ground, sky and lines. Positions are relative to the scene's origin.
+
+struct Globals {
+    clip: mat4x4f,          // to the camera's clip space
+    sun_clip: mat4x4f,      // to the shadow map
+    eye: vec4f,             // w: near plane
+    sun: vec4f,             // unit vector towards the sun; w: strength
+    zenith: vec4f,          // w: how dark shadows are
+    horizon: vec4f,         // w: where the ground begins to fade, m from the eye
+    right: vec4f,           // camera axes, scaled to the edges of the picture
+    up: vec4f,
+    forward: vec4f,
+    screen: vec4f,          // width and height in pixels; z: texels of the shadow map a side (0: none); w: metres a texel
+};
+
+@group(0) @binding(0) var<uniform> globals: Globals;
+@group(1) @binding(0) var shadow_map: texture_depth_2d;
+@group(1) @binding(1) var shadow_sampler: sampler_comparison;
+
+override shadow_samples: u32 = 4u;
+
+// ---------------------------------------------------------------- shapes
+
+struct Shape {
+    @location(0) local: vec3f,
+    @location(1) core: vec3f,
+    @location(2) normal: vec3f,
+    @location(3) row0: vec4f,
+    @location(4) row1: vec4f,
+    @location(5) row2: vec4f,
+    @location(6) radii: vec4f,   // w: pattern
+    @location(7) half: vec4f,    // w: flags
+    @location(8) color: vec4f,
+};
+
+struct Surface {
+    @builtin(position) clip: vec4f,
+    @location(0) place: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) local: vec3f,
+    @location(3) @interpolate(flat) color: vec4f,
+    @location(4) @interpolate(flat) kind: vec2f,   // pattern, flags
+};
+
+fn placed(s: Shape) -> vec3f {
+    let p = s.local * s.radii.xyz + s.core * s.half.xyz;
+    return vec3f(dot(s.row0.xyz, p) + s.row0.w, dot(s.row1.xyz, p) + s.row1.w, dot(s.row2.xyz, p) + s.row2.w);
+}
+
+@vertex
+fn shape_vertex(s: Shape) -> Surface {
+    var out: Surface;
+    out.place = placed(s);
+    let n = s.normal / max(abs(s.radii.xyz), vec3f(1e-9)) * sign(s.radii.xyz);
+    out.normal = vec3f(dot(s.row0.xyz, n), dot(s.row1.xyz, n), dot(s.row2.xyz, n));
+    out.local = s.local * s.radii.xyz + s.core * s.half.xyz;
+    out.clip = globals.clip * vec4f(out.place, 1.0);
+    out.color = s.color;
+    out.kind = vec2f(s.radii.w, s.half.w);
+    return out;
+}
+
+@vertex
+fn shadow_vertex(s: Shape) -> @builtin(position) vec4f {
+    return globals.sun_clip * vec4f(placed(s), 1.0);
+}
+
+fn patterned(color: vec3f, pattern: f32, p: vec3f) -> vec3f {
+    if pattern < 0.5 {
+        return color;
+    }
+    if pattern < 1.5 {
+        let field = floor(p * 4.0 + vec3f(1e-3));
+        let odd = fract((field.x + field.y + field.z) * 0.5) * 2.0;
+        return color * mix(1.0, 0.62, odd);
+    }
+    if pattern < 2.5 {
+        let ring = length(p.yz * vec2f(1.0, 0.8) + 0.03 * vec2f(sin(p.x * 3.1), cos(p.x * 2.3)));
+        let grain = 0.5 + 0.5 * sin(ring * 90.0 + 2.0 * sin(p.x * 5.0 + ring * 14.0));
+        return color * mix(vec3f(0.78, 0.68, 0.55), vec3f(1.0, 0.93, 0.82), grain);
+    }
+    let side = select(vec3f(-1.0), vec3f(1.0), p >= vec3f(0.0));
+    return color * mix(0.7, 1.0, 0.5 + 0.5 * side.x * side.y * side.z);
+}
+
+// How much of the sun reaches a point: a disc of comparisons, turned from pixel to pixel so that few look like many.
+fn sunlight(place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
+    let size = globals.screen.z;
+    if size == 0.0 {
+        return 1.0;
+    }
+    let slope = sqrt(max(0.0, 1.0 - pow(dot(normal, globals.sun.xyz), 2.0)));
+    let lifted = place + normal * globals.screen.w * (1.0 + 2.5 * slope);
+    let clip = globals.sun_clip * vec4f(lifted, 1.0);
+    let at = clip.xy * vec2f(0.5, -0.5) + 0.5;
+    if any(at < vec2f(0.0)) || any(at > vec2f(1.0)) || clip.z < 0.0 {
+        return 1.0;
+    }
+    // What is beyond all that throws shadows can still be hit by them.
+    let depth = min(clip.z, 1.0);
+    let turn = 6.2831853 * fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
+    let reach = select(1.2, 2.8, shadow_samples > 8u) / size;
+    var light = 0.0;
+    for (var i = 0u; i < shadow_samples; i++) {
+        let angle = turn + f32(i) * 2.3999632;
+        let r = reach * sqrt((f32(i) + 0.5) / f32(shadow_samples));
+        let offset = r * vec2f(cos(angle), sin(angle));
+        light += textureSampleCompareLevel(shadow_map, shadow_sampler, at + offset, depth);
+    }
+    return mix(1.0, light / f32(shadow_samples), globals.zenith.w);
+}
+
+// From light without limit to what a screen can show: bright parts are pressed together, colours stay (Narkowicz, "ACES
+// filmic tone mapping curve", 2015, applied to the largest part and blended with each part).
+fn filmic(x: vec3f) -> vec3f {
+    return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), vec3f(0.0), vec3f(1.0));
+}
+
+fn shaded(color: vec3f, place: vec3f, normal: vec3f, gloss: f32, pixel: vec2f) -> vec3f {
+    let view = normalize(globals.eye.xyz - place);
+    let facing = dot(normal, globals.sun.xyz);
+    var sun = 0.0;
+    if facing > 0.0 {
+        sun = facing * sunlight(place, normal, pixel) * globals.sun.w;
+    }
+    let overhead = 0.5 + 0.5 * normal.z;
+    let bounce = vec3f(0.34, 0.32, 0.30);
+    let ambient = mix(bounce, mix(globals.zenith.rgb, globals.horizon.rgb, 0.5), overhead) * 0.62;
+    var light = color * (ambient + vec3f(1.0, 0.95, 0.87) * (1.18 * sun));
+    let middle = normalize(view + globals.sun.xyz);
+    let shine = pow(max(dot(normal, middle), 0.0), 48.0) * sun * 0.22 * gloss;
+    let edge = pow(1.0 - max(dot(normal, view), 0.0), 4.0) * 0.10 * gloss;
+    light += vec3f(shine) + globals.horizon.rgb * edge;
+    return filmic(light * 0.78);
+}
+
+@fragment
+fn shape_fragment(s: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let color = patterned(s.color.rgb, s.kind.x, s.local);
+    if s.kind.y > 0.5 {
+        return vec4f(color, s.color.a);
+    }
+    var normal = normalize(s.normal);
+    // Loose triangles and open meshes are seen from both sides.
+    if !front {
+        normal = -normal;
+    }
+    return vec4f(shaded(color, s.place, normal, 1.0, s.clip.xy), s.color.a);
+}
+
+// ---------------------------------------------------------------- sky
+
+struct Backdrop {
+    @builtin(position) clip: vec4f,
+    @location(0) along: vec3f,
+};
+
+fn sky(along: vec3f) -> vec3f {
+    let height = clamp(along.z, 0.0, 1.0);
+    return mix(globals.horizon.rgb, globals.zenith.rgb, 1.0 - pow(1.0 - height, 2.2));
+}
+
+@vertex
+fn sky_vertex(@builtin(vertex_index) n: u32) -> Backdrop {
+    let corner = vec2f(f32(n & 1u) * 4.0 - 1.0, f32(n >> 1u) * 4.0 - 1.0);
+    var out: Backdrop;
+    out.clip = vec4f(corner, 0.0, 1.0);
+    out.along = globals.forward.xyz + globals.right.xyz * corner.x + globals.up.xyz * corner.y;
+    return out;
+}
+
+@fragment
+fn sky_fragment(s: Backdrop) -> @location(0) vec4f {
+    return vec4f(sky(normalize(s.along)), 1.0);
+}
+
+// ---------------------------------------------------------------- ground
+
+struct Plane {
+    @location(0) point: vec4f,    // a point of it; w: distance of grid lines, 0 for none
+    @location(1) first: vec4f,    // unit vectors along it; w: how far it is drawn
+    @location(2) second: vec4f,
+    @location(3) color: vec4f,
+    @location(4) middle: vec4f,   // the point of it that is nearest to the target
+};
+
+struct Floor {
+    @builtin(position) clip: vec4f,
+    @location(0) place: vec3f,
+    @location(1) grid: vec2f,
+    @location(2) @interpolate(flat) color: vec4f,
+    @location(3) @interpolate(flat) normal: vec3f,
+    @location(4) @interpolate(flat) step: vec2f,
+};
+
+@vertex
+fn ground_vertex(@builtin(vertex_index) n: u32, plane: Plane) -> Floor {
+    let corner = (vec2f(f32(n & 1u), f32(n >> 1u)) * 2.0 - 1.0) * plane.first.w;
+    var out: Floor;
+    out.place = plane.middle.xyz + plane.first.xyz * corner.x + plane.second.xyz * corner.y;
+    let offset = out.place - plane.point.xyz;
+    out.grid = vec2f(dot(offset, plane.first.xyz), dot(offset, plane.second.xyz));
+    out.clip = globals.clip * vec4f(out.place, 1.0);
+    out.color = plane.color;
+    out.normal = cross(plane.first.xyz, plane.second.xyz);
+    out.step = vec2f(plane.point.w, plane.first.w);
+    return out;
+}
+
+// How much of a pixel lines cover that are `step` apart and some pixels wide.
+fn ruled(at: vec2f, step: f32, width: f32) -> f32 {
+    let scaled = at / step;
+    let pixel = max(fwidth(scaled), vec2f(1e-6));
+    let away = abs(fract(scaled - 0.5) - 0.5) / pixel;
+    let line = clamp(vec2f(0.5 * width + 0.5) - away, vec2f(0.0), vec2f(1.0));
+    // Lines that are closer than some pixels melt into a tint.
+    let clear = clamp(vec2f(1.0) - pixel * 2.0, vec2f(0.0), vec2f(1.0));
+    let seen = line * clear;
+    return max(seen.x, seen.y);
+}
+
+@fragment
+fn ground_fragment(s: Floor) -> @location(0) vec4f {
+    var normal = s.normal;
+    let below = dot(normal, globals.eye.xyz - s.place) < 0.0;
+    var color = s.color.rgb;
+    if s.step.x > 0.0 {
+        let fine = ruled(s.grid, s.step.x, 1.0);
+        let strong = ruled(s.grid, s.step.x * 10.0, 1.6);
+        color = mix(color, color * 0.55, max(fine * 0.42, strong * 0.8));
+    }
+    if below {
+        normal = -normal;
+    }
+    let lit = shaded(color, s.place, normal, 0.0, s.clip.xy);
+    let away = distance(s.place, globals.eye.xyz);
+    let fade = 1.0 - exp2(-pow(max(away - globals.horizon.w, 0.0) / (globals.horizon.w * 4.0), 1.2));
+    let edge = smoothstep(0.7, 1.0, length(s.place - globals.eye.xyz) / s.step.y);
+    let far = sky(normalize(s.place - globals.eye.xyz));
+    // From below, a ground is a veil that shows what stands on it.
+    let alpha = select(s.color.a, 0.35, below);
+    return vec4f(mix(lit, far, max(fade, edge)), alpha);
+}
+
+// ---------------------------------------------------------------- lines
+
+struct Segment {
+    @location(0) from_: vec4f,   // w: width in pixels
+    @location(1) to_: vec4f,
+    @location(2) color: vec4f,
+};
+
+struct Stroke {
+    @builtin(position) clip: vec4f,
+    @location(0) @interpolate(flat) color: vec4f,
+};
+
+@vertex
+fn line_vertex(@builtin(vertex_index) n: u32, s: Segment) -> Stroke {
+    var a = globals.clip * vec4f(s.from_.xyz, 1.0);
+    var b = globals.clip * vec4f(s.to_.xyz, 1.0);
+    let near = globals.eye.w;
+    var out: Stroke;
+    out.color = s.color;
+    if a.w < near && b.w < near {
+        out.clip = vec4f(2.0, 2.0, 2.0, 1.0);
+        return out;
+    }
+    if a.w < near {
+        a = mix(a, b, (near - a.w) / (b.w - a.w));
+    } else if b.w < near {
+        b = mix(b, a, (near - b.w) / (a.w - b.w));
+    }
+    let along = (b.xy / b.w - a.xy / a.w) * globals.screen.xy;
+    let unit = along / max(length(along), 1e-6);
+    let across = vec2f(-unit.y, unit.x) * select(-1.0, 1.0, (n & 1u) == 0u);
+    let start = n < 2u;
+    let end = select(b, a, start);
+    let beyond = unit * select(0.5, -0.5, start);
+    let shift = (across + beyond) * s.from_.w / globals.screen.xy;
+    // A hair nearer than the surfaces that lines are drawn on.
+    out.clip = vec4f(end.xy + shift * end.w, end.z * 1.0005, end.w);
+    return out;
+}
+
+@fragment
+fn line_fragment(s: Stroke) -> @location(0) vec4f {
+    return s.color;
+}
