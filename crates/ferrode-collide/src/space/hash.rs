@@ -2,8 +2,8 @@
 //! section 2.4).
 
 use super::{BroadPhase, Members, Proxy, ProxyId, ProxyTable, Scratch, scan};
-use crate::filter::passes;
-use ferrode_math::Aabb;
+use crate::filter::{may_collide, passes};
+use ferrode_math::{Aabb, Vec3};
 
 /// Cells double in size from level to level; a geom lies in the at most eight cells that its box touches on the
 /// level of its size, and is compared with what shares these cells on its own and all coarser levels.
@@ -72,15 +72,17 @@ fn power_of_two(k: i32) -> f64 {
 }
 
 /// The cell of a point. `None` beyond the range of whole numbers: such a geom counts as too large.
-fn cell(p: ferrode_math::Vec3, level: i32) -> Option<[i64; 3]> {
+fn cell(p: Vec3, level: i32) -> Option<[i64; 3]> {
     let scale = power_of_two(-level);
     let mut c = [0; 3];
     for i in 0..3 {
-        let x = (p[i] * scale).floor();
+        let x = p[i] * scale;
         if !(x.abs() < 1e15) {
             return None;
         }
-        c[i] = x as i64;
+        // Rounded down; `floor` is a function call where the processor is not asked for more than x86-64.
+        let towards_zero = x as i64;
+        c[i] = towards_zero - i64::from(towards_zero as f64 > x);
     }
     Some(c)
 }
@@ -93,6 +95,26 @@ struct Entry {
     low: [i64; 3],
     high: [i64; 3],
 }
+
+impl Entry {
+    /// Where the search of the cells comes to a pair: when the finer of the two looks at its cells, or the earlier one if they are
+    /// on one level; by levels, by the first cell that both are in, and in a cell by who came there last.
+    fn order(&self, other: &Self) -> u64 {
+        let first = if self.level == other.level { self.index < other.index } else { self.level < other.level };
+        let (probe, other) = if first { (self, other) } else { (other, self) };
+        let up = (other.level - probe.level) as u32;
+        let mut key = u64::from(probe.index) << 7 | u64::from(up);
+        for i in 0..3 {
+            // A box touches at most two cells along each axis.
+            key = key << 1 | u64::from(other.low[i] > probe.low[i] >> up);
+        }
+        key << INDEX_BITS | (INDEX_MASK - u64::from(other.index))
+    }
+}
+
+/// Enough for the numbers of all boxes in a sweep.
+const INDEX_BITS: u32 = MOST_SWEPT.trailing_zeros() + 1;
+const INDEX_MASK: u64 = (1 << INDEX_BITS) - 1;
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
@@ -107,6 +129,9 @@ struct Node {
 pub(crate) struct HashScratch {
     entries: Vec<Entry>,
     big: Vec<ProxyId>,
+    swept: Vec<Swept>,
+    /// Pairs, by when the search of the cells would come to them.
+    order: Vec<u64>,
     nodes: Vec<Node>,
     table: Vec<u32>,
     /// For each entry, the last entry that was compared with it: no pair is seen twice.
@@ -115,6 +140,17 @@ pub(crate) struct HashScratch {
 }
 
 const END: u32 = u32::MAX;
+/// So many boxes are compared sooner by a sweep along one axis than by way of their cells.
+const MOST_SWEPT: usize = 2048;
+
+/// A box in a sweep: its extent along the axis of the sweep first.
+#[derive(Clone, Copy, Debug)]
+struct Swept {
+    low: f64,
+    high: f64,
+    sides: [f64; 4],
+    entry: u32,
+}
 
 fn address(level: i32, cell: [i64; 3], mask: u64) -> usize {
     let mut h = (level as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -125,26 +161,11 @@ fn address(level: i32, cell: [i64; 3], mask: u64) -> usize {
     (h & mask) as usize
 }
 
-impl BroadPhase for HashSpace {
-    fn insert(&mut self, table: &mut ProxyTable, id: ProxyId) {
-        self.members.push_front(table, id);
-    }
-
-    fn remove(&mut self, table: &mut ProxyTable, id: ProxyId) {
-        self.members.remove(table, id);
-    }
-
-    fn moved(&mut self, table: &mut ProxyTable, id: ProxyId) {
-        self.members.to_front(table, id);
-    }
-
-    fn update(&mut self, _: &ProxyTable) {}
-
-    fn collide(&self, table: &ProxyTable, scratch: &mut Scratch, report: &mut dyn FnMut(ProxyId, ProxyId)) {
-        let s = &mut scratch.hash;
+impl HashSpace {
+    /// Lists the members with their cells, and those that are too large; returns the highest level.
+    fn list_entries(&self, table: &ProxyTable, s: &mut HashScratch) -> i32 {
         s.entries.clear();
         s.big.clear();
-        s.nodes.clear();
         let mut highest = self.min_level;
         for id in self.members.iter(table) {
             let p = table.get(id);
@@ -160,6 +181,68 @@ impl BroadPhase for HashSpace {
                 None => s.big.push(id),
             }
         }
+        highest
+    }
+
+    /// Finds pairs along the axis on which the boxes are most spread out, and reports them in the order of the cells.
+    fn sweep(&self, table: &ProxyTable, s: &mut HashScratch, report: &mut dyn FnMut(ProxyId, ProxyId)) {
+        let (mut sum, mut squares) = (Vec3::ZERO, Vec3::ZERO);
+        for e in &s.entries {
+            let b = &table.get(e.id).aabb;
+            let c = b.min + b.max;
+            sum += c;
+            squares += c.component_mul(c);
+        }
+        let spread = squares * s.entries.len() as f64 - sum.component_mul(sum);
+        let axis = if spread.x >= spread.y && spread.x >= spread.z {
+            0
+        } else if spread.y >= spread.z {
+            1
+        } else {
+            2
+        };
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        s.swept.clear();
+        s.swept.extend(s.entries.iter().map(|e| {
+            let Aabb { min, max } = &table.get(e.id).aabb;
+            Swept { low: min[axis], high: max[axis], sides: [min[u], max[u], min[v], max[v]], entry: e.index }
+        }));
+        s.swept.sort_unstable_by(|a, b| a.low.total_cmp(&b.low));
+        s.order.clear();
+        for (i, a) in s.swept.iter().enumerate() {
+            for b in &s.swept[i + 1..] {
+                if b.low > a.high {
+                    break;
+                }
+                let apart = (a.sides[0] > b.sides[1])
+                    | (b.sides[0] > a.sides[1])
+                    | (a.sides[2] > b.sides[3])
+                    | (b.sides[2] > a.sides[3]);
+                if !apart {
+                    let (a, b) = (&s.entries[a.entry as usize], &s.entries[b.entry as usize]);
+                    if may_collide(table.get(a.id), table.get(b.id)) {
+                        s.order.push(a.order(b));
+                    }
+                }
+            }
+        }
+        s.order.sort_unstable();
+        for key in &s.order {
+            let probe = (key >> (INDEX_BITS + 10)) as usize;
+            let other = (INDEX_MASK - (key & INDEX_MASK)) as usize;
+            report(s.entries[probe].id, s.entries[other].id);
+        }
+    }
+
+    /// Finds pairs by way of the cells.
+    fn probe(
+        &self,
+        table: &ProxyTable,
+        s: &mut HashScratch,
+        highest: i32,
+        report: &mut dyn FnMut(ProxyId, ProxyId),
+    ) {
+        s.nodes.clear();
         let size = (s.entries.len() * 8).next_power_of_two();
         let mask = size as u64 - 1;
         s.table.clear();
@@ -220,6 +303,32 @@ impl BroadPhase for HashSpace {
                 high = high.map(|c| c >> 1);
             }
         }
+    }
+}
+
+impl BroadPhase for HashSpace {
+    fn insert(&mut self, table: &mut ProxyTable, id: ProxyId) {
+        self.members.push_front(table, id);
+    }
+
+    fn remove(&mut self, table: &mut ProxyTable, id: ProxyId) {
+        self.members.remove(table, id);
+    }
+
+    fn moved(&mut self, table: &mut ProxyTable, id: ProxyId) {
+        self.members.to_front(table, id);
+    }
+
+    fn update(&mut self, _: &ProxyTable) {}
+
+    fn collide(&self, table: &ProxyTable, scratch: &mut Scratch, report: &mut dyn FnMut(ProxyId, ProxyId)) {
+        let s = &mut scratch.hash;
+        let highest = self.list_entries(table, s);
+        if s.entries.len() <= MOST_SWEPT {
+            self.sweep(table, s, report);
+        } else {
+            self.probe(table, s, highest, report);
+        }
         for e in &s.entries {
             for &b in &s.big {
                 if passes(table.get(e.id), table.get(b)) {
@@ -248,5 +357,49 @@ impl BroadPhase for HashSpace {
 
     fn members(&self) -> &Members {
         &self.members
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ferrode_math::random::OdeRandom;
+
+    /// Pairs by the sweep and by the cells, in the order of reporting.
+    fn both(count: usize, side: f64, snap: bool, seed: u32) -> [Vec<(u32, u32)>; 2] {
+        let mut random = OdeRandom::new(seed);
+        let mut number = || f64::from(random.next_u32()) / 4294967296.0;
+        let (mut space, mut table) = (HashSpace::new(), ProxyTable::new());
+        for i in 0..count {
+            let size = 3.0 * number() * number() * number();
+            let mut corner = || if snap { (side * (number() - 0.5)).round() } else { side * (number() - 0.5) };
+            let min = Vec3::new(corner(), corner(), corner());
+            let size = if snap { (4.0 * size).round() / 4.0 } else { size };
+            let mut proxy = Proxy::new(Aabb::new(min, min + Vec3::new(size, size * number(), size * number())));
+            proxy.body = (i % 5 == 0).then_some((i % 10) as u64);
+            proxy.category_bits = if i % 7 == 0 { 1 } else { 6 };
+            proxy.collide_bits = if i % 3 == 0 { 2 } else { 7 };
+            table.set(ProxyId(i as u32), proxy);
+            space.insert(&mut table, ProxyId(i as u32));
+        }
+        let mut s = HashScratch::default();
+        let mut lists = [Vec::new(), Vec::new()];
+        let highest = space.list_entries(&table, &mut s);
+        space.sweep(&table, &mut s, &mut |a, b| lists[0].push((a.0, b.0)));
+        space.probe(&table, &mut s, highest, &mut |a, b| lists[1].push((a.0, b.0)));
+        lists
+    }
+
+    #[test]
+    fn the_sweep_reports_the_pairs_of_the_cells_in_their_order() {
+        let mut pairs = 0;
+        for seed in 0..60 {
+            for (count, side, snap) in [(12, 1.5, false), (90, 4.0, false), (90, 4.0, true), (700, 9.0, false)] {
+                let [swept, probed] = both(count, side, snap, seed);
+                assert_eq!(swept, probed, "{count} boxes, seed {seed}");
+                pairs += swept.len();
+            }
+        }
+        assert!(pairs > 5000, "{pairs}");
     }
 }
