@@ -1,9 +1,10 @@
 //! What a C interface over this crate needs and Rust callers don't: raw state, ODE's numbers for parameters, and a look at
 //! every body that a step moves. Hidden from the documentation; the checked functions are the interface.
 
+use crate::arena::NIL;
 use crate::body::Body;
 use crate::joint::{Contact, JointKind};
-use crate::{BodyKey, Error, GroupKey, JointFeedback, JointKey, StepReport, Stepper, World};
+use crate::{BodyKey, Error, GroupKey, JointFeedback, JointKey, JointType, StepReport, Stepper, World};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Quat, Vec3};
 
@@ -139,6 +140,39 @@ impl World {
         group: Option<GroupKey>,
         contact: &Contact,
     ) -> Result<JointKey, Error> {
-        self.insert_joint(JointKind::Contact(Box::new(contact.clone())), group)
+        let contact = self.contact_box(contact);
+        self.insert_joint(JointKind::Contact(contact), group)
+    }
+
+    /// Whether `test` holds for the type of any joint that links the two; `None` for one of them stands for the static
+    /// world.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchBody`].
+    #[doc(hidden)]
+    pub fn any_joint_between(
+        &self,
+        a: Option<BodyKey>,
+        b: Option<BodyKey>,
+        test: impl Fn(JointType) -> bool,
+    ) -> Result<bool, Error> {
+        let index = |key: Option<BodyKey>| key.map_or(Ok(NIL), |key| self.body_index(key));
+        let (a, b) = (index(a)?, index(b)?);
+        let count = |body: u32| if body == NIL { usize::MAX } else { self.bodies.at(body).joint_count };
+        // Each joint is in the lists of both its bodies: the shorter one will do.
+        let (from, to) = if count(b) < count(a) { (b, a) } else { (a, b) };
+        if from == NIL {
+            return Ok(false);
+        }
+        let mut link = self.bodies.at(from).first_joint;
+        while link != NIL {
+            let joint = self.joints.at(link >> 1);
+            let side = (link & 1) as usize;
+            if joint.nodes[1 - side].body == to && test(joint.kind.joint_type()) {
+                return Ok(true);
+            }
+            link = joint.nodes[side].next;
+        }
+        Ok(false)
     }
 }

@@ -68,6 +68,9 @@ pub(crate) struct Scratch {
     island: Island,
     pub direct: direct::Workspace,
     pub quick: quick::Workspace,
+    /// Memory of destroyed contacts, for the next step's.
+    #[allow(clippy::vec_box)]
+    pub spare_contacts: Vec<Box<crate::joint::Contact>>,
 }
 
 impl Clone for Scratch {
@@ -121,7 +124,7 @@ impl World {
         debug_assert_eq!(self.check(), Ok(()));
         let mut report = StepReport::default();
         let mut scratch = core::mem::take(&mut self.scratch);
-        let Scratch { islands, island, direct, quick } = &mut scratch;
+        let Scratch { islands, island, direct, quick, .. } = &mut scratch;
 
         self.quarantine_unusable_bodies(&mut report);
         self.auto_disable_bodies(h);

@@ -5,7 +5,7 @@ use crate::body::{Body, BodyKey};
 use crate::ends::{Ends, Frame};
 use crate::error::{finite, finite_number, not_nan};
 use crate::group::{GroupKey, JointGroup};
-use crate::joint::{Joint, JointKind, Link, Node};
+use crate::joint::{Contact, Joint, JointKind, Link, Node};
 use crate::solve::direct::DirectSettings;
 use crate::step::Scratch;
 use crate::{AutoDisable, Damping, Error, JointFeedback, JointKey, JointType};
@@ -394,6 +394,17 @@ impl World {
 
     // ---- joints ----
 
+    /// A contact in memory of a destroyed one, if there is any.
+    pub(crate) fn contact_box(&mut self, contact: &Contact) -> Box<Contact> {
+        match self.scratch.spare_contacts.pop() {
+            Some(mut spare) => {
+                (*spare).clone_from(contact);
+                spare
+            }
+            None => Box::new(contact.clone()),
+        }
+    }
+
     pub(crate) fn insert_joint(
         &mut self,
         kind: JointKind,
@@ -431,6 +442,9 @@ impl World {
     pub(crate) fn remove_joint(&mut self, index: u32) {
         self.detach(index);
         if let Some(joint) = self.joints.remove(index) {
+            if let JointKind::Contact(contact) = joint.kind {
+                self.scratch.spare_contacts.push(contact);
+            }
             unlink(joint.prev, joint.next, &mut self.joint_list.first, |i, prev, next| {
                 let j = self.joints.at_mut(i);
                 j.prev = prev.unwrap_or(j.prev);

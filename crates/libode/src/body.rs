@@ -121,7 +121,7 @@ export! {
         BodyRecord::pool().destroy(body.get()?);
     }
 
-    fn dBodyGetWorld(body: BodyId) -> WorldId { body.get()?.world.get() }
+    fn dBodyGetWorld(body: BodyId) -> WorldId { body.get()?.world.get().handle() }
     fn dBodySetData(body: BodyId, data: *mut c_void) { body.get()?.data.set(data) }
     fn dBodyGetData(body: BodyId) -> *mut c_void { body.get()?.data.get() }
 

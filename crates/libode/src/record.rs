@@ -7,10 +7,11 @@
 use crate::fault::{Fault, Outcome, from_engine};
 use crate::mass::MassRecord;
 use crate::real::{Real, Real4, Real12, mat3, matrix3, padded, quat, quaternion, vector};
-use crate::slab::{Handle, Pool, Record, Tag};
+use crate::slab::{Handle, Link, Pool, Record, Tag};
 use core::cell::{Cell, RefCell};
 use core::ffi::c_void;
 use ferrode_dynamics::{BodyKey, BodyState, JointKey, JointType, World};
+use std::collections::VecDeque;
 
 pub type WorldId = Handle<WorldRecord>;
 pub type BodyId = Handle<BodyRecord>;
@@ -66,11 +67,11 @@ pub struct BodyRecord {
     pub force: Cell<Real4>,
     pub torque: Cell<Real4>,
     pub mass: Cell<MassRecord>,
-    pub world: Cell<WorldId>,
+    pub world: Cell<Link<WorldRecord>>,
     pub key: Cell<Option<BodyKey>>,
     pub data: Cell<*mut c_void>,
     pub moved: Cell<Option<MovedCallback>>,
-    pub first_geom: Cell<crate::geom::GeomId>,
+    pub first_geom: Cell<Link<crate::geom::GeomRecord>>,
 }
 record!(BodyRecord, BODIES, 2);
 
@@ -79,7 +80,7 @@ record!(BodyRecord, BODIES, 2);
 pub struct JointRecord {
     tag: Tag,
     /// Null for a joint of a group whose world was destroyed.
-    pub world: Cell<WorldId>,
+    pub world: Cell<Link<WorldRecord>>,
     pub key: Cell<Option<JointKey>>,
     pub joint_type: Cell<Option<JointType>>,
     pub data: Cell<*mut c_void>,
@@ -94,6 +95,8 @@ pub struct GroupRecord {
     tag: Tag,
     /// Oldest first.
     pub joints: RefCell<Vec<JointId>>,
+    /// Records of joints that were destroyed with the group's others: nobody else's, to be used again by this group.
+    pub spare: RefCell<VecDeque<JointId>>,
 }
 record!(GroupRecord, GROUPS, 4);
 
@@ -206,7 +209,7 @@ impl BodyRecord {
     /// A record for a new body of a world.
     pub fn create(world: &'static WorldRecord) -> &'static Self {
         let record = BODIES.create();
-        record.world.set(WorldId::of(world));
+        record.world.set(Link::to(world));
         world.engine(|engine| {
             let key = engine.create_body();
             if let Ok(body) = engine.body_mut(key) {
@@ -325,6 +328,17 @@ impl BodyRecord {
 }
 
 impl JointRecord {
+    /// Makes a dead record that a group has kept a blank living one.
+    pub fn renew(&self) {
+        self.world.set(Link::NULL);
+        self.key.set(None);
+        self.joint_type.set(None);
+        self.data.set(core::ptr::null_mut());
+        self.feedback.set(core::ptr::null_mut());
+        self.grouped.set(false);
+        self.tag.revive();
+    }
+
     /// The joint's world and key.
     pub fn place(&self) -> Outcome<(&'static WorldRecord, JointKey)> {
         let world = self.world.get().live().ok_or(Fault::ARGUMENT)?;

@@ -55,6 +55,13 @@ fn add_chunk(address: usize, kind: usize) -> bool {
 #[derive(Debug, Default)]
 pub struct Tag(Cell<bool>);
 
+impl Tag {
+    /// Makes a dead record that was kept back a living one again.
+    pub fn revive(&self) {
+        self.0.set(true);
+    }
+}
+
 /// A kind of record: plain cells, changed through shared references.
 pub trait Record: Sized + 'static {
     /// A number below 16 that no other kind has.
@@ -62,6 +69,11 @@ pub trait Record: Sized + 'static {
 
     /// A blank record.
     fn blank() -> Self;
+
+    /// Marks a record as dead, to be kept back by whoever has it.
+    fn retire(&self) {
+        self.tag().0.set(false);
+    }
 
     /// Its tag.
     fn tag(&self) -> &Tag;
@@ -152,6 +164,13 @@ impl<T: Record> Pool<T> {
         }
     }
 
+    /// Takes dead records that were kept back.
+    pub fn give_back(&self, records: impl Iterator<Item = &'static T>) {
+        let _held = Held::new(T::KIND);
+        // SAFETY: under the kind's lock nobody else uses the queue.
+        unsafe { &mut *self.free.get() }.extend(records.map(NonNull::from));
+    }
+
     /// Marks a record as dead.
     pub fn destroy(&self, record: &'static T) {
         record.tag().0.set(false);
@@ -182,6 +201,70 @@ impl<T> Handle<T> {
     }
 }
 
+/// A handle that this library has made itself, for links between records: it is known to lead to a record, dead or alive.
+pub struct Link<T: 'static>(Option<&'static T>);
+
+impl<T> Clone for Link<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Link<T> {}
+
+impl<T> Default for Link<T> {
+    fn default() -> Self {
+        Self::NULL
+    }
+}
+
+impl<T> Link<T> {
+    pub const NULL: Self = Self(None);
+
+    /// The link to a record.
+    #[inline]
+    pub fn to(record: &'static T) -> Self {
+        Self(Some(record))
+    }
+
+    #[inline]
+    pub fn is_null(self) -> bool {
+        self.0.is_none()
+    }
+
+    /// Whether this is a link to that record, dead or alive.
+    #[inline]
+    pub fn is_to(self, record: &T) -> bool {
+        self.0.is_some_and(|own| core::ptr::eq(own, record))
+    }
+
+    /// Whether both lead to the same record, or nowhere.
+    #[inline]
+    pub fn same(self, other: Self) -> bool {
+        self.address() == other.address()
+    }
+
+    /// What tells records apart; 0 for none.
+    #[inline]
+    pub fn address(self) -> usize {
+        self.0.map_or(0, |record| core::ptr::from_ref(record).addr())
+    }
+}
+
+impl<T: Record> Link<T> {
+    /// The record, if it lives.
+    #[inline]
+    pub fn live(self) -> Option<&'static T> {
+        self.0.filter(|record| record.tag().0.get())
+    }
+
+    /// As the program sees it.
+    #[inline]
+    pub fn handle(self) -> Handle<T> {
+        self.0.map_or(Handle::NULL, Handle::of)
+    }
+}
+
 impl<T: Record> Handle<T> {
     /// The handle of a record.
     pub fn of(record: &'static T) -> Self {
@@ -201,6 +284,16 @@ impl<T: Record> Handle<T> {
     /// The living record behind the handle.
     #[inline]
     pub fn live(self) -> Option<&'static T> {
+        self.record().filter(|record| record.tag().0.get())
+    }
+
+    /// The dead record behind a handle that is known to be one.
+    pub fn dead(self) -> Option<&'static T> {
+        self.record().filter(|record| !record.tag().0.get())
+    }
+
+    #[inline]
+    fn record(self) -> Option<&'static T> {
         let address = self.0.addr();
         let offset = address % CHUNK;
         let fits = offset.is_multiple_of(size_of::<T>()) && offset / size_of::<T>() < CHUNK / size_of::<T>();
@@ -209,7 +302,6 @@ impl<T: Record> Handle<T> {
         }
         // SAFETY: the address is that of a record in a chunk of Ts, which was initialised when the chunk was carved, is
         // never freed, and is only ever changed through cells.
-        let record = unsafe { &*self.0 };
-        record.tag().0.get().then_some(record)
+        Some(unsafe { &*self.0 })
     }
 }

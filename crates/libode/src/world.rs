@@ -4,7 +4,7 @@ use crate::fault::{Outcome, export, from_engine, message};
 use crate::geom::leave_dying_body;
 use crate::real::{OutVector, Real, f, r, vec3, vector3};
 use crate::record::{BodyId, BodyRecord, JointId, Required, WorldId, WorldRecord, handle_of};
-use crate::slab::Record;
+use crate::slab::{Link, Record};
 use core::ffi::{c_int, c_uint, c_void};
 use ferrode_dynamics::{AutoDisable, Damping, Error, QuickSettings, World};
 
@@ -64,7 +64,7 @@ fn destroy(world: &'static WorldRecord) -> usize {
     let mut orphans = 0;
     for joint in joints.into_iter().filter_map(JointId::live) {
         if joint.grouped.get() {
-            joint.world.set(WorldId::NULL);
+            joint.world.set(Link::NULL);
             joint.key.set(None);
             orphans += 1;
         } else {

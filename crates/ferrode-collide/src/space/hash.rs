@@ -2,7 +2,7 @@
 //! section 2.4).
 
 use super::{BroadPhase, Members, Proxy, ProxyId, ProxyTable, Scratch, scan};
-use crate::filter::{may_collide, passes};
+use crate::filter::passes;
 use ferrode_math::{Aabb, Vec3};
 
 /// Cells double in size from level to level; a geom lies in the at most eight cells that its box touches on the
@@ -100,7 +100,8 @@ impl Entry {
     /// Where the search of the cells comes to a pair: when the finer of the two looks at its cells, or the earlier one if they are
     /// on one level; by levels, by the first cell that both are in, and in a cell by who came there last.
     fn order(&self, other: &Self) -> u64 {
-        let first = if self.level == other.level { self.index < other.index } else { self.level < other.level };
+        let first =
+            if self.level == other.level { self.index < other.index } else { self.level < other.level };
         let (probe, other) = if first { (self, other) } else { (other, self) };
         let up = (other.level - probe.level) as u32;
         let mut key = u64::from(probe.index) << 7 | u64::from(up);
@@ -130,7 +131,7 @@ pub(crate) struct HashScratch {
     entries: Vec<Entry>,
     big: Vec<ProxyId>,
     swept: Vec<Swept>,
-    /// Pairs, by when the search of the cells would come to them.
+    /// Boxes by where they begin; then pairs, by when the search of the cells would come to them.
     order: Vec<u64>,
     nodes: Vec<Node>,
     table: Vec<u32>,
@@ -146,10 +147,15 @@ const MOST_SWEPT: usize = 2048;
 /// A box in a sweep: its extent along the axis of the sweep first.
 #[derive(Clone, Copy, Debug)]
 struct Swept {
-    low: f64,
-    high: f64,
-    sides: [f64; 4],
+    min: [f32; 3],
+    max: [f32; 3],
     entry: u32,
+}
+
+/// A number that grows as `x` does.
+fn ordered(x: f32) -> u32 {
+    let bits = x.to_bits();
+    if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }
 
 fn address(level: i32, cell: [i64; 3], mask: u64) -> usize {
@@ -202,25 +208,36 @@ impl HashSpace {
             2
         };
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        s.swept.clear();
-        s.swept.extend(s.entries.iter().map(|e| {
-            let Aabb { min, max } = &table.get(e.id).aabb;
-            Swept { low: min[axis], high: max[axis], sides: [min[u], max[u], min[v], max[v]], entry: e.index }
+        // Rounding to single precision keeps the order of numbers, so boxes that overlap still do.
+        s.order.clear();
+        s.order.extend(s.entries.iter().map(|e| {
+            let low = table.get(e.id).aabb.min[axis] as f32;
+            u64::from(ordered(low)) << 32 | u64::from(e.index)
         }));
-        s.swept.sort_unstable_by(|a, b| a.low.total_cmp(&b.low));
+        s.order.sort_unstable();
+        s.swept.clear();
+        s.swept.extend(s.order.iter().map(|key| {
+            let entry = *key as u32;
+            let Aabb { min, max } = &table.get(s.entries[entry as usize].id).aabb;
+            Swept {
+                min: [min[axis] as f32, min[u] as f32, min[v] as f32],
+                max: [max[axis] as f32, max[u] as f32, max[v] as f32],
+                entry,
+            }
+        }));
         s.order.clear();
         for (i, a) in s.swept.iter().enumerate() {
             for b in &s.swept[i + 1..] {
-                if b.low > a.high {
+                if b.min[0] > a.max[0] {
                     break;
                 }
-                let apart = (a.sides[0] > b.sides[1])
-                    | (b.sides[0] > a.sides[1])
-                    | (a.sides[2] > b.sides[3])
-                    | (b.sides[2] > a.sides[3]);
+                let apart = (a.min[1] > b.max[1])
+                    | (b.min[1] > a.max[1])
+                    | (a.min[2] > b.max[2])
+                    | (b.min[2] > a.max[2]);
                 if !apart {
                     let (a, b) = (&s.entries[a.entry as usize], &s.entries[b.entry as usize]);
-                    if may_collide(table.get(a.id), table.get(b.id)) {
+                    if passes(table.get(a.id), table.get(b.id)) {
                         s.order.push(a.order(b));
                     }
                 }
@@ -372,10 +389,12 @@ mod tests {
         let (mut space, mut table) = (HashSpace::new(), ProxyTable::new());
         for i in 0..count {
             let size = 3.0 * number() * number() * number();
-            let mut corner = || if snap { (side * (number() - 0.5)).round() } else { side * (number() - 0.5) };
+            let mut corner =
+                || if snap { (side * (number() - 0.5)).round() } else { side * (number() - 0.5) };
             let min = Vec3::new(corner(), corner(), corner());
             let size = if snap { (4.0 * size).round() / 4.0 } else { size };
-            let mut proxy = Proxy::new(Aabb::new(min, min + Vec3::new(size, size * number(), size * number())));
+            let mut proxy =
+                Proxy::new(Aabb::new(min, min + Vec3::new(size, size * number(), size * number())));
             proxy.body = (i % 5 == 0).then_some((i % 10) as u64);
             proxy.category_bits = if i % 7 == 0 { 1 } else { 6 };
             proxy.collide_bits = if i % 3 == 0 { 2 } else { 7 };
@@ -394,7 +413,9 @@ mod tests {
     fn the_sweep_reports_the_pairs_of_the_cells_in_their_order() {
         let mut pairs = 0;
         for seed in 0..60 {
-            for (count, side, snap) in [(12, 1.5, false), (90, 4.0, false), (90, 4.0, true), (700, 9.0, false)] {
+            for (count, side, snap) in
+                [(12, 1.5, false), (90, 4.0, false), (90, 4.0, true), (700, 9.0, false)]
+            {
                 let [swept, probed] = both(count, side, snap, seed);
                 assert_eq!(swept, probed, "{count} boxes, seed {seed}");
                 pairs += swept.len();

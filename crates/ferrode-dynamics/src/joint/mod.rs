@@ -441,7 +441,8 @@ impl World {
     /// [`Error::NoSuchGroup`]; [`Error::NotFinite`] if position, normal or depth are not finite.
     pub fn create_contact(&mut self, group: Option<GroupKey>, contact: &Contact) -> Result<JointKey, Error> {
         contact.check()?;
-        self.insert_joint(JointKind::Contact(Box::new(contact.clone())), group)
+        let contact = self.contact_box(contact);
+        self.insert_joint(JointKind::Contact(contact), group)
     }
 
     /// The joint, to read it by its type.

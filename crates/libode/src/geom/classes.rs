@@ -7,6 +7,7 @@ use crate::real::{In, Real};
 use crate::record::Required;
 use core::cell::{Cell, RefCell};
 use core::ffi::{c_int, c_void};
+use core::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// `dColliderFn`.
@@ -34,6 +35,9 @@ struct Registry {
     overrides: [[Option<(Collider, bool)>; CLASSES]; CLASSES],
 }
 
+/// Whether the program has registered anything: where it hasn't, nobody looks.
+static ANY: AtomicBool = AtomicBool::new(false);
+
 static REGISTRY: Mutex<Registry> =
     Mutex::new(Registry { classes: Vec::new(), overrides: [[None; CLASSES]; CLASSES] });
 
@@ -44,12 +48,16 @@ fn registry<T>(work: impl FnOnce(&mut Registry) -> T) -> T {
 /// Forgets the program's classes, as closing the library does.
 pub fn forget() {
     registry(|registry| {
+        ANY.store(false, Ordering::Release);
         registry.classes.clear();
         registry.overrides = [[None; CLASSES]; CLASSES];
     });
 }
 
 fn class_of(number: c_int) -> Option<ClassRecord> {
+    if number < FIRST_USER {
+        return None;
+    }
     let place = usize::try_from(number - FIRST_USER).ok()?;
     registry(|registry| registry.classes.get(place).copied())
 }
@@ -112,6 +120,9 @@ impl GeomRecord {
 
 /// The program's collider for two classes, and whether it takes them in the other order.
 pub fn collider(a: c_int, b: c_int) -> Option<(Collider, bool)> {
+    if !ANY.load(Ordering::Acquire) {
+        return None;
+    }
     let (i, j) = (usize::try_from(a).ok()?, usize::try_from(b).ok()?);
     if let Some(found) = registry(|registry| *registry.overrides.get(i)?.get(j)?) {
         return Some(found);
@@ -147,6 +158,7 @@ export! {
                 return Err(Fault::user("too many user classes, you must increase the limit and recompile ODE"));
             }
             registry.classes.push(description);
+            ANY.store(true, Ordering::Release);
             Ok(FIRST_USER + registry.classes.len() as c_int - 1)
         })?
     }
@@ -165,6 +177,7 @@ export! {
         let place = |n: c_int| usize::try_from(n).ok().filter(|n| *n < CLASSES).ok_or(Fault::ARGUMENT);
         let (i, j) = (place(i)?, place(j)?);
         registry(|registry| {
+            ANY.store(true, Ordering::Release);
             registry.overrides[i][j] = collider.map(|collider| (collider, false));
             registry.overrides[j][i] = collider.map(|collider| (collider, true));
         })

@@ -59,7 +59,7 @@ fn contacts_of(
 ) -> usize {
     let options = CollideOptions::from_ode_flags(flags);
     let left = usize::from(options.max_contacts).saturating_sub(from);
-    let same_body = !a.body.get().is_null() && a.body.get().address() == b.body.get().address();
+    let same_body = !a.body.get().is_null() && a.body.get().same(b.body.get());
     if core::ptr::eq(a, b) || same_body || left == 0 {
         return from;
     }
@@ -93,7 +93,7 @@ fn contacts_of(
         write(target, from + i, contact, ga, gb);
     }
     let count = found.len().min(left);
-    FOUND.set(found);
+    FOUND.with(|kept| *kept.borrow_mut() = found);
     from + count
 }
 
@@ -250,7 +250,7 @@ fn tell(pairs: &Pairs, spaces: &[&'static GeomRecord], data: *mut c_void, callba
             && second.admits(first)
         {
             // SAFETY: the program's own function, called as its header says.
-            unsafe { callback(data, *a, *b) };
+            unsafe { callback(data, a.handle(), b.handle()) };
         }
     }
 }

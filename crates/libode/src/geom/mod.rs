@@ -15,7 +15,7 @@ mod trimesh;
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{Real, Real4, Real12, mat3, r, vector};
 use crate::record::{BodyId, BodyRecord, Required, record};
-use crate::slab::{Handle, Pool, Record, Tag};
+use crate::slab::{Handle, Link, Pool, Record, Tag};
 use core::cell::{Cell, RefCell};
 use core::ffi::{c_int, c_ulong, c_void};
 use ferrode_collide::{Frame, Shape};
@@ -55,9 +55,9 @@ pub struct GeomRecord {
     tag: Tag,
     class: Cell<c_int>,
     data: Cell<*mut c_void>,
-    body: Cell<BodyId>,
-    next_on_body: Cell<GeomId>,
-    space: Cell<GeomId>,
+    body: Cell<Link<BodyRecord>>,
+    next_on_body: Cell<Link<Self>>,
+    space: Cell<Link<Self>>,
     /// Its number in the space's table.
     proxy: Cell<u32>,
     category: Cell<c_ulong>,
@@ -253,28 +253,27 @@ impl GeomRecord {
         let frame = self.frame();
         self.position.set(crate::real::padded(frame.position));
         self.rotation.set(crate::real::matrix3(&frame.rotation));
-        let this = GeomId::of(self).address();
-        if body.first_geom.get().address() == this {
+        if body.first_geom.get().is_to(self) {
             body.first_geom.set(self.next_on_body.get());
         } else {
             let mut other = body.first_geom.get().live();
             while let Some(geom) = other {
-                if geom.next_on_body.get().address() == this {
+                if geom.next_on_body.get().is_to(self) {
                     geom.next_on_body.set(self.next_on_body.get());
                     break;
                 }
                 other = geom.next_on_body.get().live();
             }
         }
-        self.next_on_body.set(GeomId::NULL);
-        self.body.set(BodyId::NULL);
+        self.next_on_body.set(Link::NULL);
+        self.body.set(Link::NULL);
         self.has_offset.set(false);
     }
 
     fn join_body(&'static self, body: &'static BodyRecord) {
-        self.body.set(BodyId::of(body));
+        self.body.set(Link::to(body));
         self.next_on_body.set(body.first_geom.get());
-        body.first_geom.set(GeomId::of(self));
+        body.first_geom.set(Link::to(self));
     }
 
     /// Destroys a geom, or a space with what it owns.
@@ -310,10 +309,8 @@ pub fn body_moved(body: &BodyRecord) -> Outcome<()> {
 
 /// All geoms of a body, the last attached first.
 pub fn all_of(body: &'static BodyRecord) -> Vec<GeomId> {
-    let after =
-        |geom: &GeomId| geom.live().map(|geom| geom.next_on_body.get()).filter(|next| !next.is_null());
-    let first = Some(body.first_geom.get()).filter(|first| !first.is_null());
-    core::iter::successors(first, after).collect()
+    let first = body.first_geom.get().live();
+    core::iter::successors(first, |geom| geom.next_on_body.get().live()).map(GeomId::of).collect()
 }
 
 impl GeomRecord {
@@ -357,7 +354,7 @@ pub fn leave_dying_body(body: &BodyRecord) {
     while let Some(geom) = body.first_geom.get().live() {
         geom.leave_body();
         geom.tell_space();
-        if body.first_geom.get().address() == GeomId::of(geom).address() {
+        if body.first_geom.get().is_to(geom) {
             return;
         }
     }
@@ -373,7 +370,7 @@ fn set_body(geom: GeomId, body: BodyId) -> Outcome<()> {
         parent.require_unlocked()?;
     }
     if let Some(target) = target {
-        if geom.body.get().address() != body.address() {
+        if !geom.body.get().is_to(target) {
             geom.leave_body();
             geom.join_body(target);
         }
@@ -414,13 +411,13 @@ export! {
     fn dGeomGetData(geom: GeomId) -> *mut c_void { geom.get()?.data.get() }
     fn dGeomGetClass(geom: GeomId) -> c_int { geom.get()?.class.get() }
     fn dGeomIsSpace(geom: GeomId) -> c_int { geom.get()?.is_space().into() }
-    fn dGeomGetSpace(geom: GeomId) -> GeomId { geom.get()?.space.get() }
+    fn dGeomGetSpace(geom: GeomId) -> GeomId { geom.get()?.space.get().handle() }
     fn dGeomSetBody(geom: GeomId, body: BodyId) { set_body(geom, body)? }
-    fn dGeomGetBody(geom: GeomId) -> BodyId { geom.get()?.body.get() }
+    fn dGeomGetBody(geom: GeomId) -> BodyId { geom.get()?.body.get().handle() }
     fn dGeomMoved(geom: GeomId) { geom.get()?.moved()? }
-    fn dBodyGetFirstGeom(body: BodyId) -> GeomId { body.get()?.first_geom.get() }
-    fn dBodyGetNextGeom(geom: GeomId) -> GeomId { geom.get()?.next_on_body.get() }
-    fn dGeomGetBodyNext(geom: GeomId) -> GeomId { geom.get()?.next_on_body.get() }
+    fn dBodyGetFirstGeom(body: BodyId) -> GeomId { body.get()?.first_geom.get().handle() }
+    fn dBodyGetNextGeom(geom: GeomId) -> GeomId { geom.get()?.next_on_body.get().handle() }
+    fn dGeomGetBodyNext(geom: GeomId) -> GeomId { geom.get()?.next_on_body.get().handle() }
     fn dGeomGetAABB(geom: GeomId, aabb: crate::real::Out<Real, 6>) { aabb.set(six(&geom.get()?.current_aabb()))? }
     fn dInfiniteAABB(_geom: GeomId, aabb: crate::real::Out<Real, 6>) { aabb.set(six(&Aabb::EVERYTHING))? }
     fn dGeomSetCategoryBits(geom: GeomId, bits: c_ulong) { set_bits(geom, |geom| geom.category.set(bits))? }

@@ -4,6 +4,7 @@ use super::{GeomId, GeomRecord, class};
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{In, Out, Real, f};
 use crate::record::Required;
+use crate::slab::Link;
 use core::cell::Cell;
 use core::ffi::c_int;
 use ferrode_collide::space::{
@@ -19,12 +20,15 @@ enum Broad {
     Quadtree(QuadtreeSpace),
 }
 
+/// A geom in a space.
+pub type Member = Link<GeomRecord>;
+
 /// A space's members and the structure that finds pairs of them.
 pub struct SpaceData {
     broad: Broad,
     table: ProxyTable,
     /// By proxy number; null for a free one.
-    members: Vec<GeomId>,
+    members: Vec<Member>,
     free: Vec<u32>,
     scratch: Scratch,
     cleanup: bool,
@@ -68,7 +72,7 @@ impl SpaceData {
     }
 
     /// Members in ODE's order.
-    pub fn list(&self) -> Vec<GeomId> {
+    pub fn list(&self) -> Vec<Member> {
         let member = |id: &ProxyId| self.members[id.0 as usize];
         match self.broad().arrays() {
             Some([dirty, clean]) => dirty.iter().chain(clean).map(member).collect(),
@@ -77,12 +81,12 @@ impl SpaceData {
     }
 
     /// Members newest or last moved first, which for sweep and prune is not the order of the index.
-    fn linked(&self) -> Vec<GeomId> {
+    fn linked(&self) -> Vec<Member> {
         self.broad().members().iter(&self.table).map(|id| self.members[id.0 as usize]).collect()
     }
 
     /// The member of an index, reached from the last one asked for when the program counts up.
-    fn member(&self, index: usize) -> Option<GeomId> {
+    fn member(&self, index: usize) -> Option<Member> {
         let member = |id: ProxyId| self.members[id.0 as usize];
         if let Some([dirty, clean]) = self.broad().arrays() {
             return dirty
@@ -124,7 +128,7 @@ impl SpaceData {
 }
 
 /// The box around a space's members; all of the world for a space that is as large.
-pub fn aabb_of(class: c_int, members: &[GeomId]) -> Aabb {
+pub fn aabb_of(class: c_int, members: &[Member]) -> Aabb {
     if matches!(class, class::SWEEP_AND_PRUNE_SPACE | class::QUADTREE_SPACE) {
         return Aabb::EVERYTHING;
     }
@@ -165,16 +169,16 @@ pub fn add(space: &'static GeomRecord, geom: &'static GeomRecord) -> Outcome<()>
     with(space, |contents| {
         let number = contents.free.pop().unwrap_or(contents.members.len() as u32);
         if number as usize == contents.members.len() {
-            contents.members.push(GeomId::NULL);
+            contents.members.push(Link::NULL);
         }
-        contents.members[number as usize] = GeomId::of(geom);
+        contents.members[number as usize] = Link::to(geom);
         geom.proxy.set(number);
         contents.cursor.set(None);
         let (broad, table, _) = contents.parts();
         table.set(ProxyId(number), proxy);
         broad.insert(table, ProxyId(number));
     })?;
-    geom.space.set(GeomId::of(space));
+    geom.space.set(Link::to(space));
     geom.dirty.set(true);
     geom.stale.set(true);
     space.moved()
@@ -187,17 +191,17 @@ pub fn remove(space: &'static GeomRecord, geom: &'static GeomRecord) -> Outcome<
         contents.cursor.set(None);
         let (broad, table, _) = contents.parts();
         broad.remove(table, ProxyId(number));
-        contents.members[number as usize] = GeomId::NULL;
+        contents.members[number as usize] = Link::NULL;
         contents.free.push(number);
     })?;
-    geom.space.set(GeomId::NULL);
+    geom.space.set(Link::NULL);
     space.moved()
 }
 
 /// Destroys a space's members, or only takes them out.
 pub fn empty(space: &'static GeomRecord) -> Outcome<()> {
     let (members, cleanup) = with(space, |contents| (contents.list(), contents.cleanup))?;
-    for member in members.into_iter().filter_map(GeomId::live) {
+    for member in members.into_iter().filter_map(Link::live) {
         if cleanup {
             member.destroy()?;
         } else {
@@ -231,7 +235,7 @@ pub fn clean(space: &'static GeomRecord) -> Outcome<()> {
     })
 }
 
-pub type Pairs = Vec<(GeomId, GeomId)>;
+pub type Pairs = Vec<(Member, Member)>;
 
 /// Pairs of members of a space that may touch.
 pub fn pairs_within(space: &'static GeomRecord, pairs: &mut Pairs) -> Outcome<()> {
@@ -250,7 +254,7 @@ pub fn pairs_within(space: &'static GeomRecord, pairs: &mut Pairs) -> Outcome<()
 fn lookup(
     space: &'static GeomRecord,
     single: &'static GeomRecord,
-    found: &mut dyn FnMut(GeomId),
+    found: &mut dyn FnMut(Member),
 ) -> Outcome<()> {
     let proxy = proxy_of(single);
     let own = single.parent().filter(|parent| core::ptr::eq(*parent, space));
@@ -273,7 +277,7 @@ pub fn pairs_between(a: &'static GeomRecord, b: &'static GeomRecord, pairs: &mut
             clean(side)?;
         }
     }
-    let (ga, gb) = (GeomId::of(a), GeomId::of(b));
+    let (ga, gb) = (Link::to(a), Link::to(b));
     match (a.is_space(), b.is_space()) {
         (false, false) => {
             if !core::ptr::eq(a, b) && ferrode_collide::filter::passes(&proxy_of(a), &proxy_of(b)) {
@@ -295,9 +299,8 @@ pub fn pairs_between(a: &'static GeomRecord, b: &'static GeomRecord, pairs: &mut
                 lookup(b, a, &mut |member| pairs.push((ga, member)))
             } else {
                 let (smaller, larger) = if na >= nb { (b, a) } else { (a, b) };
-                for other in with(smaller, |contents| contents.linked())?.into_iter().filter_map(GeomId::live)
-                {
-                    let id = GeomId::of(other);
+                for other in with(smaller, |contents| contents.linked())?.into_iter().filter_map(Link::live) {
+                    let id = Link::to(other);
                     lookup(larger, other, &mut |member| {
                         pairs.push(if na >= nb { (member, id) } else { (id, member) });
                     })?;
@@ -389,7 +392,7 @@ export! {
     }
     fn dSpaceGetGeom(space: GeomId, index: c_int) -> GeomId {
         let index = usize::try_from(index).map_err(|_| Fault::ARGUMENT)?;
-        with(get(space)?, |contents| contents.member(index))?.ok_or(Fault::ARGUMENT)?
+        with(get(space)?, |contents| contents.member(index))?.ok_or(Fault::ARGUMENT)?.handle()
     }
     fn dSpaceGetClass(space: GeomId) -> c_int { get(space)?.class.get() }
 }

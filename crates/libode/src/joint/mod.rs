@@ -14,8 +14,6 @@ use ferrode_dynamics::{
 };
 use ferrode_math::Vec3;
 
-pub use shared::destroy_record;
-
 /// A joint type's name as ODE's messages spell it.
 pub trait Named: JointData {
     /// The fault for a joint of another type.

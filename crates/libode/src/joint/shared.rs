@@ -4,10 +4,10 @@ use crate::contact::ContactRecord;
 use crate::fault::{Fault, Outcome, export, from_engine};
 use crate::real::In;
 use crate::record::{
-    BodyId, BodyRecord, FeedbackRecord, GroupId, JointId, JointRecord, Required, WorldId, WorldRecord,
-    handle_of, number_of,
+    BodyId, BodyRecord, FeedbackRecord, GroupId, GroupRecord, JointId, JointRecord, Required, WorldId,
+    WorldRecord, handle_of, number_of,
 };
-use crate::slab::Record;
+use crate::slab::{Link, Record};
 use crate::stepping::listen;
 use core::ffi::{c_int, c_void};
 use ferrode_dynamics::{BodyKey, Error, JointKey, JointType, World};
@@ -21,7 +21,7 @@ pub fn create(
 ) -> Outcome<JointId> {
     let world = world.get()?;
     let group = if group.is_null() { None } else { Some(group.get()?) };
-    let record = JointRecord::pool().create();
+    let record = group.and_then(GroupRecord::reuse).unwrap_or_else(|| JointRecord::pool().create());
     let handle = JointId::of(record);
     let key = world.engine(|engine| {
         let key = make(engine)?;
@@ -31,7 +31,7 @@ pub fn create(
         JointRecord::pool().destroy(record);
         return Err(Fault::ARGUMENT);
     };
-    record.world.set(WorldId::of(world));
+    record.world.set(Link::to(world));
     record.key.set(Some(key));
     record.joint_type.set(Some(joint_type));
     if let Some(group) = group {
@@ -41,14 +41,18 @@ pub fn create(
     Ok(handle)
 }
 
-/// Destroys a joint, in a group or not.
-pub fn destroy_record(record: &'static JointRecord) {
+/// Takes a joint out of its world.
+pub fn leave_world(record: &'static JointRecord) {
     if let Ok((world, key)) = record.place() {
         if !record.feedback.get().is_null() {
             listen(world, JointId::of(record), false);
         }
         world.engine(|engine| engine.destroy_joint(key)).ok();
     }
+}
+
+fn destroy_record(record: &'static JointRecord) {
+    leave_world(record);
     JointRecord::pool().destroy(record);
 }
 
@@ -68,13 +72,28 @@ fn pair(a: BodyId, b: BodyId) -> Outcome<Option<Pair>> {
     Ok((!strangers).then(|| (world, [first.map(|(_, key)| key), second.map(|(_, key)| key)])))
 }
 
-/// The joints that connect two bodies, newest first.
-fn connecting(a: BodyId, b: BodyId) -> Outcome<Vec<JointId>> {
-    let Some((world, [a, b])) = pair(a, b)? else { return Ok(Vec::new()) };
-    world.engine(|engine| {
-        let joints = engine.connecting_joints(a, b).map_err(|_| Fault::ARGUMENT)?;
-        Ok(joints.filter_map(|key| engine.joint_user_data(key).ok()).map(handle_of).collect())
+/// What `work` makes of the joints that connect two bodies, newest first.
+fn connecting<T: Default>(
+    a: BodyId,
+    b: BodyId,
+    work: impl FnOnce(&World, &mut dyn Iterator<Item = JointKey>) -> T,
+) -> Outcome<T> {
+    let Some((world, [a, b])) = pair(a, b)? else { return Ok(T::default()) };
+    world.engine(|engine| match engine.connecting_joints(a, b) {
+        Ok(mut joints) => Ok(work(engine, &mut joints)),
+        Err(_) => Err(Fault::ARGUMENT),
     })
+}
+
+/// Whether a joint of a type for which `test` holds connects two bodies.
+fn are_connected(a: BodyId, b: BodyId, test: impl Fn(JointType) -> bool) -> Outcome<bool> {
+    a.get()?;
+    let Some((world, [a, b])) = pair(a, b)? else { return Ok(false) };
+    world.engine(|engine| engine.any_joint_between(a, b, test).map_err(|_| Fault::ARGUMENT))
+}
+
+fn handle_in(world: &World, joint: JointKey) -> JointId {
+    world.joint_user_data(joint).map_or(JointId::NULL, handle_of)
 }
 
 fn attach(joint: JointId, first: BodyId, second: BodyId) -> Outcome<()> {
@@ -89,10 +108,13 @@ fn attach(joint: JointId, first: BodyId, second: BodyId) -> Outcome<()> {
         return Err(Fault::user("can't have body1==body2"));
     }
     for body in [first, second].into_iter().flatten() {
-        if body.world.get().address() != WorldId::of(world).address() {
+        if !body.world.get().is_to(world) {
             return Err(Fault::user("joint and bodies must be in same world"));
         }
-        body.take_in();
+        // A contact's frame is the world's: it does not look at the bodies when it is attached.
+        if joint.joint_type.get() != Some(JointType::Contact) {
+            body.take_in();
+        }
     }
     let key_of = |body: Option<&BodyRecord>| body.and_then(|body| body.key.get());
     match world.engine(|engine| engine.attach(key, key_of(first), key_of(second))) {
@@ -184,10 +206,12 @@ export! {
     fn dJointGetFeedback(joint: JointId) -> *mut FeedbackRecord { joint.get()?.feedback.get() }
 
     fn dConnectingJoint(body1: BodyId, body2: BodyId) -> JointId {
-        connecting(body1, body2)?.first().copied().unwrap_or(JointId::NULL)
+        connecting(body1, body2, |world, joints| joints.next().map(|key| handle_in(world, key)))?.unwrap_or(JointId::NULL)
     }
     fn dConnectingJointList(body1: BodyId, body2: BodyId, list: *mut JointId) -> c_int {
-        let joints = connecting(body1, body2)?;
+        let joints: Vec<JointId> = connecting(body1, body2, |world, joints| {
+            joints.map(|key| handle_in(world, key)).collect()
+        })?;
         if list.is_null() && !joints.is_empty() {
             return Err(Fault::ARGUMENT);
         }
@@ -197,15 +221,8 @@ export! {
         }
         joints.len() as c_int
     }
-    fn dAreConnected(body1: BodyId, body2: BodyId) -> c_int {
-        body1.get()?;
-        (!connecting(body1, body2)?.is_empty()).into()
-    }
+    fn dAreConnected(body1: BodyId, body2: BodyId) -> c_int { are_connected(body1, body2, |_| true)?.into() }
     fn dAreConnectedExcluding(body1: BodyId, body2: BodyId, joint_type: c_int) -> c_int {
-        body1.get()?;
-        let other = |joint: &JointId| {
-            joint.live().and_then(|joint| joint.joint_type.get()).is_some_and(|t| t.number() != joint_type)
-        };
-        connecting(body1, body2)?.iter().any(other).into()
+        are_connected(body1, body2, |other| other.number() != joint_type)?.into()
     }
 }
