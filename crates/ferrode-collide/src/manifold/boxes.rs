@@ -371,6 +371,19 @@ fn face_contact<const A: bool>(
     Answer::Touch
 }
 
+/// The number below `count` with the greatest measure, and that.
+#[inline(always)]
+fn best(count: usize, measure: impl Fn(usize) -> f32) -> (usize, f32) {
+    let mut best = (0, f32::NEG_INFINITY);
+    for i in 0..count {
+        let m = measure(i);
+        if m > best.1 {
+            best = (i, m);
+        }
+    }
+    best
+}
+
 /// As for all patches: the deepest, the furthest from it, the widest on either side; known ones stay.
 #[inline(never)]
 fn choose(
@@ -390,19 +403,10 @@ fn choose(
         hi = if c.u > hi { c.u } else { hi };
     }
     let same = 1e-5 * (hi - lo);
-    let best = |measure: &dyn Fn(usize) -> f32| {
-        let mut best = (0, f32::NEG_INFINITY);
-        for i in 0..list.len() {
-            let m = measure(i);
-            if m > best.1 {
-                best = (i, m);
-            }
-        }
-        best
-    };
-    let first = best(&|i| if list[i].depth >= deepest - same { known[i] } else { f32::NEG_INFINITY }).0;
+    let first =
+        best(list.len(), |i| if list[i].depth >= deepest - same { known[i] } else { f32::NEG_INFINITY }).0;
     let from = |i: usize| (list[i].u - list[first].u, list[i].v - list[first].v);
-    let second = best(&|i| {
+    let second = best(list.len(), |i| {
         let (u, v) = from(i);
         (u * u + v * v) * known[i]
     })
@@ -412,7 +416,7 @@ fn choose(
     let enough = 1e-6 * (su * su + sv * sv);
     let mut n = 2;
     for side in [1.0f32, -1.0] {
-        let (i, area) = best(&|i| {
+        let (i, area) = best(list.len(), |i| {
             let (u, v) = from(i);
             side * (su * v - sv * u) * known[i]
         });

@@ -89,6 +89,10 @@ impl Slab {
                 place
             }
             None => {
+                if self.list.len() == self.list.capacity() {
+                    // Doubling would leave up to half of the largest array unused.
+                    self.list.reserve_exact((self.list.len() / 8).max(256));
+                }
                 self.list.push(contact);
                 self.list.len() as u32 - 1
             }

@@ -15,6 +15,8 @@ const LEAVES: usize = 128;
 const PAIRS: usize = 1024;
 /// Contacts of one task, a multiple of 64.
 const CONTACTS: usize = 256;
+/// Room for new contacts that a task keeps.
+const MOST_KEPT: usize = 128;
 /// Cosine of the angle by which the normal of a concave pair's manifold may turn in one step.
 const SAME_NORMAL: f32 = 0.9;
 
@@ -260,6 +262,9 @@ impl PairCache {
                 place
             }
             None => {
+                if self.pairs.len() == self.pairs.capacity() {
+                    self.pairs.reserve_exact((self.pairs.len() / 8).max(256));
+                }
                 self.pairs.push(pair);
                 self.pairs.len() as u32 - 1
             }
@@ -421,6 +426,10 @@ impl PairCache {
                 if manifold.depth() >= 0.0 {
                     self.touch(*pair);
                 }
+            }
+            if task.one.capacity() > MOST_KEPT {
+                // A world is filled once: what that took is not held for ever.
+                task.one = Vec::new();
             }
             for &pair in &task.gone {
                 self.remove_pair(pair);
