@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 
 # The live comparison runs the same scenes on an installed libode; it needs its headers and C compilers. The test of the
 # installer builds a CMake project.
-if command -v apt-get >/dev/null && ! { [ -e /usr/include/ode/ode.h ] && command -v cmake g++ pkg-config >/dev/null; }; then
+if command -v apt-get >/dev/null && ! { [ -e /usr/include/ode/ode.h ] && type -P cmake g++ pkg-config >/dev/null; }; then
   if [ "$(id -u)" = 0 ]; then as_root=(); else as_root=(sudo -n); fi
   "${as_root[@]}" apt-get update -qq && "${as_root[@]}" apt-get install -y -qq libode-dev gcc g++ cmake make pkg-config >/dev/null ||
     echo "note: libode-dev and compilers could not be installed; what needs them will be skipped"

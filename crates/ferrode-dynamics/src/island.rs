@@ -71,7 +71,7 @@ impl World {
     }
 
     /// Whether one of a joint's bodies can be moved by forces.
-    fn moves_a_body(&self, joint: &crate::joint::Joint) -> bool {
+    pub(crate) fn moves_a_body(&self, joint: &crate::joint::Joint) -> bool {
         joint.nodes.iter().any(|node| {
             node.body != NIL && {
                 let body = self.bodies.at(node.body);

@@ -1,5 +1,7 @@
 //! One step: the table of contents of the engine.
 
+mod fast;
+
 use crate::body::Body;
 use crate::ends::{Ends, Frame, StepContext};
 use crate::foreign::MovedObserver;
@@ -71,6 +73,7 @@ pub(crate) struct Scratch {
     /// Memory of destroyed contacts, for the next step's.
     #[allow(clippy::vec_box)]
     pub spare_contacts: Vec<Box<crate::joint::Contact>>,
+    fast: fast::Workspace,
 }
 
 impl Clone for Scratch {

@@ -30,6 +30,7 @@ mod record;
 mod rotation;
 mod selftest;
 mod slab;
+mod step_fast;
 mod stepping;
 mod threading;
 mod timer;

@@ -90,8 +90,19 @@ impl StepSettings {
     }
 }
 
+/// How a step is made.
+#[derive(Clone, Copy, Debug)]
+pub enum Method {
+    Plain(Stepper),
+    /// The old StepFast.
+    Fast {
+        iterations: c_uint,
+        depth: c_uint,
+    },
+}
+
 /// One step, as all entry points make it.
-pub fn step(world: &'static WorldRecord, stepper: Stepper, stepsize: Real) -> Outcome<c_int> {
+pub fn step(world: &'static WorldRecord, method: Method, stepsize: Real) -> Outcome<c_int> {
     let h = f(stepsize);
     if h.is_nan() || h <= 0.0 || h.is_infinite() {
         return Err(Fault::user("stepsize must be > 0"));
@@ -111,7 +122,13 @@ pub fn step(world: &'static WorldRecord, stepper: Stepper, stepsize: Real) -> Ou
     let engine = world.engine(core::ptr::from_mut);
     world.stepping.set(true);
     // SAFETY: as in `WorldRecord::engine`; when the step calls out, `call_back` lends its own reborrow to other calls.
-    let report = unsafe { &mut *engine }.step_observed(stepper, h, &mut random, &mut observe);
+    let engine_world = unsafe { &mut *engine };
+    let report = match method {
+        Method::Plain(stepper) => engine_world.step_observed(stepper, h, &mut random, &mut observe),
+        Method::Fast { iterations, depth } => {
+            engine_world.step_fast(h, iterations, depth, &mut random, &mut observe)
+        }
+    };
     world.restore(Some(engine));
     world.stepping.set(false);
     if random.seed() != seed {
@@ -195,21 +212,20 @@ pub fn listen(world: &WorldRecord, joint: JointId, on: bool) {
     }
 }
 
-fn step_on(world: WorldId, stepper: Stepper, stepsize: Real) -> Outcome<c_int> {
-    let world = world.get()?;
-    crate::threading::run_step(world, stepper, stepsize)
+pub fn step_on(world: WorldId, method: Method, stepsize: Real) -> Outcome<c_int> {
+    crate::threading::run_step(world.get()?, method, stepsize)
 }
 
 /// One step by the exact solver.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn dWorldStep(world: WorldId, stepsize: Real) -> c_int {
-    fence("dWorldStep", || step_on(world, Stepper::Direct, stepsize))
+    fence("dWorldStep", || step_on(world, Method::Plain(Stepper::Direct), stepsize))
 }
 
 /// One step by the iterative solver.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn dWorldQuickStep(world: WorldId, stepsize: Real) -> c_int {
-    fence("dWorldQuickStep", || step_on(world, Stepper::Quick, stepsize))
+    fence("dWorldQuickStep", || step_on(world, Method::Plain(Stepper::Quick), stepsize))
 }
 
 export! {

@@ -301,3 +301,18 @@ fn every_header_stands_alone_in_every_standard() {
     let refused = output(Command::new("gcc").arg("-fsyntax-only").arg("-I").arg(include()).arg(both));
     assert!(refused.is_some_and(|refused| !refused.status.success()), "both precisions at once are an error");
 }
+
+#[test]
+fn step_fast_does_what_old_manuals_say() {
+    let folder = scratch("header-step-fast");
+    link_library(&build_folder().join("libode.so"), &folder);
+    let program = folder.join("step_fast");
+    let source = here().join("tests/headers/step_fast.c");
+    if compile(&program, &source, "c99", &[], &folder).is_none() {
+        return skip("no gcc");
+    }
+    let said = run(&program, &folder);
+    let broken: Vec<_> =
+        said.lines().filter(|line| line.ends_with(" 0") && !line.starts_with("exit")).collect();
+    assert!(broken.is_empty() && said.contains("end\n"), "{said}");
+}

@@ -53,6 +53,12 @@ ODE_API void dWorldSetQuickStepNumIterations(dWorldID world, int number);
 ODE_API void dWorldSetQuickStepW(dWorldID world, dReal factor);
 ODE_API void dWorldImpulseToForce(dWorldID world, dReal stepsize, dReal ix, dReal iy, dReal iz, dVector3 force);
 
+/* The old StepFast: the step cut into substeps, in which joints are solved one by one; bodies that sleep are woken by awake
+   ones through so many layers (2), in all worlds. */
+ODE_API void dWorldStepFast1(dWorldID world, dReal stepsize, int max_iterations);
+ODE_API void dWorldSetAutoEnableDepthSF1(dWorldID world, int depth);
+ODE_API int dWorldGetAutoEnableDepthSF1(dWorldID world);
+
 /* Contacts: the greatest velocity at which depth is corrected, and the depth that is left be. */
 ODE_API dReal dWorldGetContactMaxCorrectingVel(dWorldID world);
 ODE_API dReal dWorldGetContactSurfaceLayer(dWorldID world);

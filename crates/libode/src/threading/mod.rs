@@ -11,9 +11,9 @@ use crate::fault::{Fault, Outcome};
 use crate::real::Real;
 use crate::record::{WorldRecord, record};
 use crate::slab::{Handle, Pool, Record, Tag};
+use crate::stepping::Method;
 use core::cell::Cell;
 use core::ffi::{c_char, c_int, c_long, c_uint, c_void};
-use ferrode_dynamics::Stepper;
 use std::sync::Arc;
 
 pub use calls::{Call, Calls};
@@ -89,7 +89,7 @@ pub type PostCall = unsafe extern "C-unwind" fn(
 /// A step on its way to the thread that makes it, and its outcome on the way back.
 struct StepCall {
     world: &'static WorldRecord,
-    stepper: Stepper,
+    method: Method,
     stepsize: Real,
     outcome: Outcome<c_int>,
 }
@@ -101,13 +101,13 @@ unsafe extern "C-unwind" fn step_call(
 ) -> c_int {
     // SAFETY: `run_step` passes its own StepCall and waits for the call's end.
     let call = unsafe { &mut *context.cast::<StepCall>() };
-    call.outcome = crate::stepping::step(call.world, call.stepper, call.stepsize);
+    call.outcome = crate::stepping::step(call.world, call.method, call.stepsize);
     c_int::from(matches!(call.outcome, Ok(1)))
 }
 
 /// Makes a step: in a thread of the implementation that the program has given the world, if that has any.
-pub fn run_step(world: &'static WorldRecord, stepper: Stepper, stepsize: Real) -> Outcome<c_int> {
-    let direct = || crate::stepping::step(world, stepper, stepsize);
+pub fn run_step(world: &'static WorldRecord, method: Method, stepsize: Real) -> Outcome<c_int> {
+    let direct = || crate::stepping::step(world, method, stepsize);
     let Some((functions, implementation)) = world.settings.threading.get() else { return direct() };
     let implementation = core::ptr::with_exposed_provenance_mut::<c_void>(implementation.address());
     let (Some(count), Some(alloc), Some(free), Some(post), Some(wait)) = (
@@ -128,7 +128,7 @@ pub fn run_step(world: &'static WorldRecord, stepper: Stepper, stepsize: Real) -
     if token.is_null() {
         return direct();
     }
-    let mut call = StepCall { world, stepper, stepsize, outcome: Ok(0) };
+    let mut call = StepCall { world, method, stepsize, outcome: Ok(0) };
     let null = core::ptr::null_mut::<c_void>();
     let (context, name) = (core::ptr::from_mut(&mut call).cast(), c"step".as_ptr());
     let (no_fault, no_releasee) = (core::ptr::null_mut(), core::ptr::null_mut());
