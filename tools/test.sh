@@ -11,6 +11,13 @@ if command -v apt-get >/dev/null && ! { [ -e /usr/include/ode/ode.h ] && type -P
     echo "note: libode-dev and compilers could not be installed; what needs them will be skipped"
 fi
 
+# Debian's Python binding of ODE runs unchanged on the C interface.
+if command -v apt-get >/dev/null && ! /usr/bin/python3 -c "import ode" 2>/dev/null; then
+  if [ "$(id -u)" = 0 ]; then as_root=(); else as_root=(sudo -n); fi
+  "${as_root[@]}" apt-get update -qq && "${as_root[@]}" apt-get install -y -qq python3-pyode >/dev/null ||
+    echo "note: python3-pyode could not be installed; its test will be skipped"
+fi
+
 # Pictures are drawn in software where there is no graphics card; windows are opened in a virtual display.
 if command -v apt-get >/dev/null && ! { ls /usr/share/vulkan/icd.d/lvp_icd.* >/dev/null 2>&1 && command -v Xvfb >/dev/null; }; then
   if [ "$(id -u)" = 0 ]; then as_root=(); else as_root=(sudo -n); fi

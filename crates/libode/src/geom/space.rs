@@ -311,6 +311,18 @@ pub fn pairs_between(a: &'static GeomRecord, b: &'static GeomRecord, pairs: &mut
     }
 }
 
+/// The order of axes in ODE's three fields of two bits. Programs pass numbers that name an axis twice or none (pyode's
+/// default does), and libode takes them: what is missing is filled in.
+fn axis_order_of(fields: c_int) -> Outcome<AxisOrder> {
+    let mut axes = Vec::with_capacity(3);
+    for axis in [fields & 3, fields >> 2 & 3, fields >> 4 & 3, 0, 1, 2] {
+        if axis < 3 && !axes.contains(&axis) {
+            axes.push(axis);
+        }
+    }
+    AxisOrder::from_ode(axes[0] | axes[1] << 2 | axes[2] << 4).ok_or(Fault::ARGUMENT)
+}
+
 fn create(class: c_int, broad: Broad, parent: GeomId) -> Outcome<GeomId> {
     GeomRecord::create(class, None, Some(SpaceData::new(broad)), parent)
 }
@@ -344,7 +356,7 @@ export! {
         create(class::QUADTREE_SPACE, Broad::Quadtree(broad), parent)?
     }
     fn dSweepAndPruneSpaceCreate(parent: GeomId, axis_order: c_int) -> GeomId {
-        let order = AxisOrder::from_ode(axis_order).ok_or(Fault::ARGUMENT)?;
+        let order = axis_order_of(axis_order)?;
         create(class::SWEEP_AND_PRUNE_SPACE, Broad::SweepAndPrune(SweepAndPruneSpace::new(order)), parent)?
     }
     fn dSpaceDestroy(space: GeomId) { get(space)?.destroy()? }
