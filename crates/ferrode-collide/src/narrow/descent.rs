@@ -65,7 +65,8 @@ pub(super) fn descend(a: &Body<'_>, b: &Body<'_>, mut n: Vec3, mut at: Vertex, s
         let next = difference(a, b, m);
         let reach = m.dot(next.w);
         let jump = next.w - at.w;
-        if jump.length_squared() > (JUMP * scale) * (JUMP * scale) && next.w.dot(n) < h - 0.5 * off.dot(step) {
+        if jump.length_squared() > (JUMP * scale) * (JUMP * scale) && next.w.dot(n) < h - 0.5 * off.dot(step)
+        {
             return follow_valley(a, b, m, jump, scale);
         }
         if !(reach < h + 1e-12 * scale) {

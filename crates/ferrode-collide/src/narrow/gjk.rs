@@ -86,8 +86,7 @@ impl Part {
                     let to_other = w(r) - w(p);
                     let (origin, other) = (-n.dot(w(p)), n.dot(to_other));
                     // On the other vertex's side, unless the simplex is flat.
-                    let thick =
-                        other * other > 1e-28 * n.length_squared() * to_other.length_squared();
+                    let thick = other * other > 1e-28 * n.length_squared() * to_other.length_squared();
                     if origin * other > 0.0 && thick {
                         continue;
                     }

@@ -182,8 +182,10 @@ impl Polytope {
         }
         for m in 0..length {
             let (from, to, beyond) = hole[m];
-            let (before, after) =
-                (places[if m == 0 { length - 1 } else { m - 1 }], places[if m + 1 == length { 0 } else { m + 1 }]);
+            let (before, after) = (
+                places[if m == 0 { length - 1 } else { m - 1 }],
+                places[if m + 1 == length { 0 } else { m + 1 }],
+            );
             self.set(usize::from(places[m]), [from, to, apex], [beyond, after, before]);
             let f = &mut self.faces[usize::from(beyond)];
             for k in 0..3 {
@@ -218,7 +220,8 @@ impl Polytope {
                 let (from, other) = (self.faces[i].v[k], usize::from(self.faces[i].across[k]));
                 let g = &self.faces[other];
                 // The common edge ends where ours begins; on with the one after it.
-                let Some(m) = (0..3).find(|&m| g.v[(m + 1) % 3] == from && usize::from(g.across[m]) == i) else {
+                let Some(m) = (0..3).find(|&m| g.v[(m + 1) % 3] == from && usize::from(g.across[m]) == i)
+                else {
                     return 0;
                 };
                 (i, k) = (other, (m + 1) % 3);
