@@ -101,16 +101,17 @@ fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut 
         if reach - best.distance <= tolerance {
             break;
         }
-        if let Some(l) = &least {
-            if best.normal.dot(l.normal) > SAME_PLACE && p.has_point(nearest, l.w) {
-                // Beside the least overlap, and no better: the surface curves away from there.
-                p.close(nearest);
-                match p.nearest() {
-                    Some(f) => nearest = f,
-                    None => break,
-                }
-                continue;
+        if let Some(l) = &least
+            && best.normal.dot(l.normal) > SAME_PLACE
+            && p.has_point(nearest, l.w)
+        {
+            // Beside the least overlap, and no better: the surface curves away from there.
+            p.close(nearest);
+            match p.nearest() {
+                Some(f) => nearest = f,
+                None => break,
             }
+            continue;
         }
         let mut added = next;
         if round && least.is_none() && descents < DESCENTS && reach - best.distance < NEAR * scale {

@@ -9,7 +9,7 @@ pub(super) fn triangle_pairs(a: &TriMesh, b: &TriMesh, local: &Frame, mut found:
     // The larger triangles one by one, each with the tree of the other mesh: of these the box of that mesh leaves few.
     let size = |m: &TriMesh| m.bounds().extent().length_squared() / m.triangles().len() as f64;
     if size(a) > size(b) {
-        larger(a, b, local, |i, j| found(i, j));
+        larger(a, b, local, found);
     } else {
         let rotation = local.rotation.transpose();
         let inverse = Frame::new(-(rotation * local.position), rotation);
