@@ -1,8 +1,7 @@
 use super::reduce::reduce;
 use super::support::Body;
-use super::triangle::{Facet, body_facet};
+use super::triangle::{Facet, body_facet, bounds};
 use crate::{Contacts, Frame, Shape, TriMesh};
-use ferrode_math::{Aabb, Vec3};
 
 impl TriMesh {
     /// Triangle `i` in the mesh's coordinates; `None` if it has no area.
@@ -23,17 +22,12 @@ impl TriMesh {
 /// stay.
 pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
     // All in the mesh's coordinates.
-    let reach = shape.reach() * (1.0 + 1e-9);
-    let at = fm.point_to_local(fa.position);
-    if !mesh.bounds().overlaps(&Aabb::from_center(at, Vec3::splat(reach))) {
-        return;
-    }
-    let local = Frame::new(at, fm.rotation.transpose() * fa.rotation);
-    let Some(body) = Body::of(shape, &local, Vec3::ZERO) else { return };
+    let local = Frame::new(fm.point_to_local(fa.position), fm.rotation.transpose() * fa.rotation);
+    let Some(body) = Body::of(shape, &local, ferrode_math::Vec3::ZERO) else { return };
     let middle = body.middle();
     {
         let mut all = out.all();
-        mesh.tree().query(&shape.aabb_in(&local), |i| {
+        mesh.tree().query(&bounds(&body), |i| {
             if let Some(facet) = mesh.facet(i) {
                 body_facet(&body, middle, &facet, &mut all);
             }

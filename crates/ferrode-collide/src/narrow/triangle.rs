@@ -2,7 +2,6 @@
 
 use super::convex::{Touch, touch};
 use super::manifold::{add_face_contacts, add_manifold};
-use super::over_face::over_face;
 use super::support::Body;
 use crate::Contacts;
 use crate::shape::Neighbour;
@@ -38,7 +37,7 @@ impl Facet {
     }
 
     /// A length like the triangle's.
-    fn scale(&self) -> f64 {
+    pub fn scale(&self) -> f64 {
         (self.corners[1] - self.corners[0]).abs_max() + (self.corners[2] - self.corners[0]).abs_max()
     }
 
@@ -63,7 +62,7 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     }
     let triangle = Body::triangle(facet.corners);
     let first = out.len();
-    match over_face(body, middle, facet).or_else(|| touch(body, &triangle)) {
+    match touch(body, &triangle) {
         // Beyond an edge within the surface the neighbour bears the body.
         Some(t) if t.normal.dot(n) > 1.0 - SAME && !at_inner_edge(facet, &t) => {
             add_manifold(body, &triangle, &Touch { normal: n, ..t }, Vec3::ZERO, out);
