@@ -2,7 +2,7 @@
 
 use crate::fault::{Fault, Outcome, export, fence, message};
 use crate::misc;
-use crate::real::{In, Real, f, padded};
+use crate::real::{In, Out, Real, f, padded};
 use crate::record::{BodyId, JointId, Required, WorldId, WorldRecord, handle_of};
 use crate::threading::{FunctionsInfo, ImplementationId};
 use core::cell::Cell;
@@ -44,12 +44,25 @@ struct Block {
     manager: MemoryFunctions,
 }
 
+/// `dWorldSteppingThreadingParameters` of the newest ODE.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct ThreadLimits {
+    /// Which of the others count: 1, 2, 4.
+    which: c_uint,
+    islands: c_uint,
+    stepping: c_uint,
+    solving: c_uint,
+}
+
 /// How a world steps, apart from the engine's own parameters.
 #[derive(Default)]
 pub struct StepSettings {
     /// What was asked for, which may be less than none.
     pub quick_iterations: Cell<Option<c_int>>,
     pub max_threads: Cell<c_uint>,
+    /// Threads for one island, and for one solve less one (so that the default is 0): kept for their reader.
+    island_threads: Cell<[c_uint; 2]>,
     reserve: Cell<ReserveInfo>,
     manager: Cell<Option<MemoryFunctions>>,
     block: Cell<Option<Block>>,
@@ -234,6 +247,35 @@ export! {
     }
     fn dWorldGetStepIslandsProcessingMaxThreadCount(world: WorldId) -> c_uint {
         world.get()?.settings.max_threads.get()
+    }
+    /// Of the newest ODE. A step runs whole in one thread, so these limits hold; what was set can be read.
+    fn dWorldSetSteppingThreadingParameters(world: WorldId, limits: In<ThreadLimits>) {
+        let (world, [limits]) = (world.get()?, limits.get()?);
+        let [mut stepping, mut solving] = world.settings.island_threads.get();
+        if limits.which & 1 != 0 {
+            world.settings.max_threads.set(limits.islands);
+        }
+        if limits.which & 2 != 0 {
+            stepping = limits.stepping;
+        }
+        if limits.which & 4 != 0 {
+            solving = limits.solving.wrapping_sub(1);
+        }
+        world.settings.island_threads.set([stepping, solving])
+    }
+    fn dWorldGetSteppingThreadingParameters(world: WorldId, limits: Out<ThreadLimits>) {
+        let (world, [mut given]) = (world.get()?, limits.get()?);
+        let [stepping, solving] = world.settings.island_threads.get();
+        if given.which & 1 != 0 {
+            given.islands = world.settings.max_threads.get();
+        }
+        if given.which & 2 != 0 {
+            given.stepping = stepping;
+        }
+        if given.which & 4 != 0 {
+            given.solving = solving.wrapping_add(1);
+        }
+        limits.set([given])?
     }
     /// Worlds don't share memory here: there is nothing to set up, and it always works.
     fn dWorldUseSharedWorkingMemory(world: WorldId, from: WorldId) -> c_int {

@@ -140,7 +140,9 @@ fn only_public_names_are_exported() {
         "dGeomTriMeshDataGet",
         "dJointAddPUTorques",
         "dWorldGetAutoEnableDepthSF1",
+        "dWorldGetSteppingThreadingParameters",
         "dWorldSetAutoEnableDepthSF1",
+        "dWorldSetSteppingThreadingParameters",
         "dWorldStepFast1",
     ];
     let foreign: Vec<_> = ours

@@ -1,7 +1,8 @@
 use super::reduce::reduce;
 use super::support::Body;
-use super::triangle::{Facet, body_facet, bounds};
+use super::triangle::{Facet, body_facet};
 use crate::{Contacts, Frame, Shape, TriMesh};
+use ferrode_math::{Aabb, Vec3};
 
 impl TriMesh {
     /// Triangle `i` in the mesh's coordinates; `None` if it has no area.
@@ -22,12 +23,17 @@ impl TriMesh {
 /// stay.
 pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
     // All in the mesh's coordinates.
-    let local = Frame::new(fm.point_to_local(fa.position), fm.rotation.transpose() * fa.rotation);
-    let Some(body) = Body::of(shape, &local, ferrode_math::Vec3::ZERO) else { return };
+    let reach = shape.reach() * (1.0 + 1e-9);
+    let at = fm.point_to_local(fa.position);
+    if !mesh.bounds().overlaps(&Aabb::from_center(at, Vec3::splat(reach))) {
+        return;
+    }
+    let local = Frame::new(at, fm.rotation.transpose() * fa.rotation);
+    let Some(body) = Body::of(shape, &local, Vec3::ZERO) else { return };
     let middle = body.middle();
     {
         let mut all = out.all();
-        mesh.tree().query(&bounds(&body), |i| {
+        mesh.tree().query(&shape.aabb_in(&local), |i| {
             if let Some(facet) = mesh.facet(i) {
                 body_facet(&body, middle, &facet, &mut all);
             }

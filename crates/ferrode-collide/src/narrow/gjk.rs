@@ -31,15 +31,6 @@ pub(crate) enum Gap {
 }
 
 impl Simplex {
-    /// The point with the present weights.
-    fn nearest(&self) -> Vec3 {
-        let mut v = Vec3::ZERO;
-        for i in 0..self.count {
-            v += self.vertices[i].w * self.weights[i];
-        }
-        v
-    }
-
     /// The points of the two bodies with the present weights.
     pub fn witnesses(&self) -> (Vec3, Vec3) {
         let (mut a, mut b) = (Vec3::ZERO, Vec3::ZERO);
@@ -49,68 +40,83 @@ impl Simplex {
         }
         (a, b)
     }
+}
 
-    fn push(&mut self, v: Vertex) {
-        self.vertices[self.count] = v;
-        self.count += 1;
+/// Up to three of four vertices, and the weights of their point nearest to the origin. Vertices stay where they are while
+/// the simplex walks; only this list changes.
+#[derive(Clone, Copy)]
+struct Part {
+    places: [usize; 3],
+    weights: [f64; 3],
+    count: usize,
+}
+
+impl Part {
+    /// Of a segment or triangle whose vertices are at the places `of`.
+    #[inline(always)]
+    fn new((places, weights, count): ([usize; 3], [f64; 3], usize), of: [usize; 3]) -> Self {
+        Self { places: places.map(|p| of[p]), weights, count }
     }
 
-    /// Keeps the vertices at the given places, with these weights.
-    fn keep(&mut self, places: &[usize], weights: &[f64]) {
-        let old = self.vertices;
-        for (k, (&i, &w)) in places.iter().zip(weights).enumerate() {
-            self.vertices[k] = old[i];
-            self.weights[k] = w;
+    #[inline(always)]
+    fn nearest(&self, vertices: &[Vertex; 4]) -> Vec3 {
+        let mut v = vertices[self.places[0]].w * self.weights[0];
+        for k in 1..self.count {
+            v += vertices[self.places[k]].w * self.weights[k];
         }
-        self.count = places.len();
+        v
     }
 
-    /// Reduces the simplex to the part that is nearest to the origin. True if it contains the origin.
-    fn reduce(&mut self) -> bool {
-        let w = |i: usize| self.vertices[i].w;
-        match self.count {
-            1 => self.weights[0] = 1.0,
-            2 => {
-                let (places, weights, n) = nearest_of_segment(w(0), w(1));
-                self.keep(&places[..n], &weights[..n]);
-            }
-            3 => {
-                let (places, weights, n) = nearest_of_triangle(w(0), w(1), w(2));
-                self.keep(&places[..n], &weights[..n]);
-            }
+    /// With the vertex at `new` added: the part of that which is nearest to the origin. `None` if it contains the origin.
+    #[inline]
+    fn with(&self, vertices: &[Vertex; 4], new: usize) -> Option<Self> {
+        let w = |i: usize| vertices[i].w;
+        let ([i, j, k], new_place) = (self.places, new);
+        Some(match self.count {
+            1 => Self::new(nearest_of_segment(w(i), w(new)), [i, new, new]),
+            2 => Self::new(nearest_of_triangle(w(i), w(j), w(new)), [i, j, new]),
+            // The origin is on the new vertex's side of the other three but for rounding: their face comes last.
             _ => {
-                const FACES: [[usize; 4]; 4] = [[0, 1, 2, 3], [0, 3, 1, 2], [0, 2, 3, 1], [1, 3, 2, 0]];
-                let mut best: Option<(f64, [usize; 3], [f64; 3], usize)> = None;
-                for [i, j, k, l] in FACES {
-                    let n = (w(j) - w(i)).cross(w(k) - w(i));
-                    let (origin, other) = (-n.dot(w(i)), n.dot(w(l) - w(i)));
+                let mut best: Option<(f64, Self)> = None;
+                for [p, q, new, r] in [[i, j, new, k], [j, k, new, i], [k, i, new, j], [i, j, k, new]] {
+                    if r == new_place && best.is_some() {
+                        break;
+                    }
+                    let n = (w(q) - w(p)).cross(w(new) - w(p));
+                    let to_other = w(r) - w(p);
+                    let (origin, other) = (-n.dot(w(p)), n.dot(to_other));
                     // On the other vertex's side, unless the simplex is flat.
-                    if origin * other > 0.0 && other.abs() > 1e-14 * n.length() * (w(l) - w(i)).length() {
+                    let thick = other * other > 1e-28 * n.length_squared() * to_other.length_squared();
+                    if origin * other > 0.0 && thick {
                         continue;
                     }
-                    let (places, weights, count) = nearest_of_triangle(w(i), w(j), w(k));
-                    let face = [i, j, k];
-                    let mut v = Vec3::ZERO;
-                    let mut named = [0; 3];
-                    for m in 0..count {
-                        named[m] = face[places[m]];
-                        v += w(named[m]) * weights[m];
-                    }
-                    let square = v.length_squared();
+                    let part = Self::new(nearest_of_triangle(w(p), w(q), w(new)), [p, q, new]);
+                    let square = part.nearest(vertices).length_squared();
                     if best.is_none_or(|b| square < b.0) {
-                        best = Some((square, named, weights, count));
+                        best = Some((square, part));
                     }
                 }
-                match best {
-                    None => return true,
-                    Some((_, places, weights, n)) => self.keep(&places[..n], &weights[..n]),
-                }
+                best?.1
             }
+        })
+    }
+
+    /// The vertices of this part, and perhaps one more.
+    fn simplex(&self, vertices: &[Vertex; 4], new: Option<usize>) -> Simplex {
+        let mut s = Simplex { vertices: [Vertex::default(); 4], weights: [0.0; 4], count: self.count };
+        for k in 0..self.count {
+            s.vertices[k] = vertices[self.places[k]];
+            s.weights[k] = self.weights[k];
         }
-        false
+        if let Some(new) = new {
+            s.vertices[s.count] = vertices[new];
+            s.count += 1;
+        }
+        s
     }
 }
 
+#[inline(always)]
 fn nearest_of_segment(a: Vec3, b: Vec3) -> ([usize; 3], [f64; 3], usize) {
     let ab = b - a;
     let (along, square) = (-a.dot(ab), ab.length_squared());
@@ -126,6 +132,7 @@ fn nearest_of_segment(a: Vec3, b: Vec3) -> ([usize; 3], [f64; 3], usize) {
 
 /// The part of a triangle nearest to the origin, by the Voronoi regions of its features (Ericson, *Real-Time
 /// Collision Detection*, 5.1.5).
+#[inline]
 pub(super) fn nearest_of_triangle(a: Vec3, b: Vec3, c: Vec3) -> ([usize; 3], [f64; 3], usize) {
     let (ab, ac) = (b - a, c - a);
     let (d1, d2) = (-ab.dot(a), -ac.dot(a));
@@ -164,64 +171,59 @@ pub(super) fn nearest_of_triangle(a: Vec3, b: Vec3, c: Vec3) -> ([usize; 3], [f6
 /// The nearest points of two cores, or a simplex about the origin if they overlap. Cores known to be further apart
 /// than `limit` are not looked at closely.
 pub(crate) fn gjk(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
-    gjk_from(a, b, limit, a.center - b.center, EXACT)
-}
-
-/// What is left of the squared distance to gain when the search ends: all but rounding.
-const EXACT: f64 = 1e-13;
-
-/// As [`gjk`], from a direction that may be near the answer, until no more than `rest` of the squared distance is left
-/// to gain.
-pub(crate) fn gjk_from(a: &Body<'_>, b: &Body<'_>, limit: f64, start: Vec3, rest: f64) -> Gap {
-    let scale = a.reach() + b.reach() + (a.center - b.center).length();
+    let mut d = a.center - b.center;
+    let scale = a.reach() + b.reach() + d.length();
     let touching = 1e-26 * scale * scale;
-    let mut d = start;
     if !(d.length_squared() > 0.0) {
         d = Vec3::X;
     }
-    let mut simplex = Simplex { vertices: [Vertex::default(); 4], weights: [0.0; 4], count: 0 };
-    simplex.push(difference(a, b, -d));
-    simplex.reduce();
-    let mut v = simplex.nearest();
-    let mut best = simplex;
-    // The normal of the furthest support plane: slivers lose the direction before the distance.
-    let (mut best_direction, mut bound) = (v.normalized_or(Vec3::X), f64::NEG_INFINITY);
+    let mut vertices = [Vertex::default(); 4];
+    vertices[0] = difference(a, b, -d);
+    let mut part = Part { places: [0; 3], weights: [1.0, 0.0, 0.0], count: 1 };
+    let mut v = vertices[0].w;
+    // The normal of the furthest support plane, and how far: slivers lose the direction before the distance.
+    let (mut furthest, mut bound) = (v, (0.0, 1.0));
     for _ in 0..ITERATIONS {
         let square = v.length_squared();
         if square <= touching {
-            return Gap::Overlap(best);
+            return Gap::Overlap(part.simplex(&vertices, None));
         }
         let next = difference(a, b, -v);
         let along = v.dot(next.w);
         if along > 0.0 && along * along > limit * limit * square {
             return Gap::Far;
         }
-        if along > bound * square.sqrt() {
-            bound = along / square.sqrt();
-            best_direction = v * (1.0 / square.sqrt());
+        // By squares: along / |v|.
+        if if along > 0.0 { along * along * bound.1 > bound.0 * square } else { bound.0 == 0.0 } {
+            bound = (if along > 0.0 { along * along } else { 0.0 }, square);
+            furthest = v;
         }
         // No support point is nearer, or it is one we have.
-        if square - along <= rest * square || simplex.vertices[..simplex.count].iter().any(|x| x.w == next.w)
+        if square - along <= 1e-13 * square
+            || part.places[..part.count].iter().any(|&i| vertices[i].w == next.w)
         {
             break;
         }
-        simplex.push(next);
-        if simplex.reduce() {
+        let used = part.places[..part.count].iter().fold(0u32, |bits, &i| bits | 1 << i);
+        let new = (used.trailing_ones() & 3) as usize;
+        vertices[new] = next;
+        let Some(reduced) = part.with(&vertices, new) else {
             // A support plane between the origin and the difference was found: the tetrahedron is a sliver, and rounding
             // alone puts the origin within.
             if along > 0.0 {
                 break;
             }
-            return Gap::Overlap(simplex);
-        }
-        let nearer = simplex.nearest();
+            return Gap::Overlap(part.simplex(&vertices, Some(new)));
+        };
+        let nearer = reduced.nearest(&vertices);
         if !(nearer.length_squared() < square) {
             break;
         }
         v = nearer;
-        best = simplex;
+        part = reduced;
     }
+    let best = part.simplex(&vertices, None);
     let (pa, pb) = best.witnesses();
-    let between = best_direction * v.length();
+    let between = furthest.normalized_or(Vec3::X) * v.length();
     Gap::Apart { a: pa, b: pb, between }
 }

@@ -1,4 +1,3 @@
-use super::triangle::Facet;
 use crate::space::Probe;
 use crate::{Contacts, Frame, GeomContact, Ray, TriMesh};
 use ferrode_math::Vec3;
@@ -15,15 +14,15 @@ pub fn ray_trimesh(ray: &Ray, fr: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut 
     {
         let mut all = out.all();
         mesh.tree().seek(&Probe::ray(start, direction), &mut limit, |i, limit| {
-            if let Some(facet) = mesh.facet(i)
-                && !(ray.backface_cull && facet.normal.dot(direction) > 0.0)
-                && let Some(alpha) = ray_facet(start, direction, *limit, &facet)
+            let n = mesh.normal(i);
+            if !(ray.backface_cull && n.dot(direction) > 0.0)
+                && let Some(alpha) = ray_triangle(start, direction, *limit, mesh.corners(i), n)
             {
                 if nearest {
                     *limit = alpha;
                 }
-                let mut c = GeomContact::new(o + u * alpha, fm.vector_to_world(facet.normal), alpha);
-                c.side2 = facet.index;
+                let mut c = GeomContact::new(o + u * alpha, fm.vector_to_world(n), alpha);
+                c.side2 = i as i32;
                 all.push_contact(c);
             }
         });
@@ -38,16 +37,27 @@ pub fn ray_trimesh(ray: &Ray, fr: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut 
 ///
 /// The signs of the volumes that the ray spans with the edges decide; neighbours compute the same volume for their
 /// common edge, so that no ray slips between them.
-pub(super) fn ray_facet(start: Vec3, direction: Vec3, length: f64, facet: &Facet) -> Option<f64> {
-    let slope = facet.normal.dot(direction);
+pub(super) fn ray_triangle(
+    start: Vec3,
+    direction: Vec3,
+    length: f64,
+    corners: [Vec3; 3],
+    normal: Vec3,
+) -> Option<f64> {
+    // Also of one without area, whose normal is zero.
+    let slope = normal.dot(direction);
     if slope == 0.0 {
         return None;
     }
-    let [a, b, c] = facet.corners.map(|p| p - start);
-    let sides = [direction.dot(a.cross(b)), direction.dot(b.cross(c)), direction.dot(c.cross(a))];
-    if !(sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0)) {
+    let [a, b, c] = corners.map(|p| p - start);
+    let (x, y) = (direction.dot(a.cross(b)), direction.dot(b.cross(c)));
+    if (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0) {
         return None;
     }
-    let alpha = facet.normal.dot(a) / slope;
+    let z = direction.dot(c.cross(a));
+    if !((x >= 0.0 && y >= 0.0 && z >= 0.0) || (x <= 0.0 && y <= 0.0 && z <= 0.0)) {
+        return None;
+    }
+    let alpha = normal.dot(a) / slope;
     (alpha >= 0.0 && alpha <= length).then_some(alpha)
 }

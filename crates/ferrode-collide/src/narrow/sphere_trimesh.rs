@@ -1,4 +1,6 @@
 use super::reduce::reduce;
+use super::triangle::Facet;
+use crate::shape::Neighbour;
 use crate::{Contacts, Frame, GeomContact, Sphere, TriMesh};
 use ferrode_math::Aabb;
 use ferrode_math::Vec3;
@@ -12,23 +14,21 @@ pub fn sphere_trimesh(sphere: &Sphere, fs: &Frame, mesh: &TriMesh, fm: &Frame, o
     {
         let mut all = out.all();
         mesh.tree().query(&around, |i| {
-            let Some(facet) = mesh.facet(i) else { return };
-            let height = facet.height(center);
-            if height < 0.0 || height > r {
+            let n = mesh.normal(i);
+            let corners = mesh.corners(i);
+            let height = n.dot(center - corners[0]);
+            if !(height >= 0.0 && height <= r) || n == Vec3::ZERO {
                 return;
             }
+            let facet = Facet { corners, normal: n, neighbours: [Neighbour::None; 3], index: i as i32 };
             let q = facet.nearest(center);
             let line = center - q;
             let distance = line.length();
             let overlap = r - distance;
             if overlap >= 0.0 {
-                let cosine = if distance > 0.0 { line.dot(facet.normal) / distance } else { 1.0 };
-                let mut c = GeomContact::new(
-                    fm.point_to_world(q),
-                    fm.vector_to_world(facet.normal),
-                    overlap * cosine,
-                );
-                c.side2 = facet.index;
+                let cosine = if distance > 0.0 { line.dot(n) / distance } else { 1.0 };
+                let mut c = GeomContact::new(fm.point_to_world(q), fm.vector_to_world(n), overlap * cosine);
+                c.side2 = i as i32;
                 all.push_contact(c);
             }
         });

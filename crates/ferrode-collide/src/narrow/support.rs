@@ -128,6 +128,11 @@ impl<'a> Body<'a> {
         self.reach
     }
 
+    /// Whether its core is curved.
+    pub fn is_round(&self) -> bool {
+        matches!(self.core, Core::Cylinder(..) | Core::Cone(..) | Core::Ellipsoid(_))
+    }
+
     /// A point within the body.
     pub fn middle(&self) -> Vec3 {
         match self.core {

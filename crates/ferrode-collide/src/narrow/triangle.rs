@@ -2,6 +2,7 @@
 
 use super::convex::{Touch, touch};
 use super::manifold::{add_face_contacts, add_manifold};
+use super::over_face::over_face;
 use super::support::Body;
 use crate::Contacts;
 use crate::shape::Neighbour;
@@ -37,7 +38,7 @@ impl Facet {
     }
 
     /// A length like the triangle's.
-    pub fn scale(&self) -> f64 {
+    fn scale(&self) -> f64 {
         (self.corners[1] - self.corners[0]).abs_max() + (self.corners[2] - self.corners[0]).abs_max()
     }
 
@@ -62,7 +63,7 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     }
     let triangle = Body::triangle(facet.corners);
     let first = out.len();
-    match touch(body, &triangle) {
+    match over_face(body, middle, facet).or_else(|| touch(body, &triangle)) {
         // Beyond an edge within the surface the neighbour bears the body.
         Some(t) if t.normal.dot(n) > 1.0 - SAME && !at_inner_edge(facet, &t) => {
             add_manifold(body, &triangle, &Touch { normal: n, ..t }, Vec3::ZERO, out);

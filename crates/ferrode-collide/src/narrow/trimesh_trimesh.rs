@@ -1,10 +1,11 @@
 use super::manifold::{Found, below_face};
 use super::reduce::reduce;
-use super::support::{Body, difference};
+use super::support::Body;
 use super::triangle::Facet;
+use super::triangle_pairs::triangle_pairs;
 use crate::shape::Neighbour;
 use crate::{Contacts, Frame, GeomContact, TriMesh};
-use ferrode_math::{Aabb, Vec3};
+use ferrode_math::Vec3;
 
 /// Two meshes: for each two triangles that cross, what of the one lies behind the other, over it; of the two ways the
 /// one with less depth. Edges against edges are not told apart from that.
@@ -13,23 +14,14 @@ pub fn trimesh_trimesh(a: &TriMesh, fa: &Frame, b: &TriMesh, fb: &Frame, out: &m
     let local = Frame::new(fa.point_to_local(fb.position), fa.rotation.transpose() * fb.rotation);
     {
         let mut all = out.all();
-        a.tree().query(&b.aabb(&local), |i| {
-            let Some(ta) = a.facet(i) else { return };
-            // The triangle's box in b's coordinates.
-            let corners = ta.corners.map(|p| local.point_to_local(p));
-            let around = Aabb::new(
-                corners[0].min(corners[1]).min(corners[2]),
-                corners[0].max(corners[1]).max(corners[2]),
-            );
-            b.tree().query(&around, |j| {
-                let Some(tb) = b.facet(j) else { return };
-                let tb = Facet {
-                    corners: tb.corners.map(|p| local.point_to_world(p)),
-                    normal: local.vector_to_world(tb.normal),
-                    ..tb
-                };
-                facets(&ta, &tb, &mut all);
-            });
+        triangle_pairs(a, b, &local, |i, j| {
+            let (Some(ta), Some(tb)) = (a.facet(i), b.facet(j)) else { return };
+            let tb = Facet {
+                corners: tb.corners.map(|p| local.point_to_world(p)),
+                normal: local.vector_to_world(tb.normal),
+                ..tb
+            };
+            facets(&ta, &tb, &mut all);
         });
     }
     let size = a.bounds().extent().abs_max().min(b.bounds().extent().abs_max());
@@ -42,10 +34,13 @@ pub fn trimesh_trimesh(a: &TriMesh, fa: &Frame, b: &TriMesh, fb: &Frame, out: &m
 
 /// Whether two triangles share a point: no separating axis among the two normals and the nine products of edges.
 fn cross(a: &Facet, b: &Facet) -> bool {
-    let (ba, bb) = (Body::triangle(a.corners), Body::triangle(b.corners));
     let apart = |n: Vec3| {
-        // The furthest point of a − b along n is behind the origin.
-        difference(&ba, &bb, n).w.dot(n) < 0.0 || difference(&ba, &bb, -n).w.dot(n) > 0.0
+        let span = |t: &Facet| {
+            let [x, y, z] = t.corners.map(|p| n.dot(p));
+            (x.min(y).min(z), x.max(y).max(z))
+        };
+        let ((a0, a1), (b0, b1)) = (span(a), span(b));
+        a1 < b0 || a0 > b1
     };
     if apart(a.normal) || apart(b.normal) {
         return false;

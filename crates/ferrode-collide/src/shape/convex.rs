@@ -12,6 +12,8 @@ pub struct Convex {
 #[derive(Debug)]
 struct Polyhedron {
     points: Vec<Vec3>,
+    /// The same, four at a time by components; the last is repeated to fill up.
+    blocks: Vec<[[f64; 4]; 3]>,
     faces: Vec<Face>,
     /// Corners of all faces, one after another.
     corners: Vec<u32>,
@@ -52,6 +54,10 @@ impl Convex {
         check_points(points)?;
         let mut data = Polyhedron {
             points: points.to_vec(),
+            blocks: points
+                .chunks(4)
+                .map(|p| [0, 1, 2].map(|k| [0, 1, 2, 3].map(|l| p[l.min(p.len() - 1)][k])))
+                .collect(),
             faces: Vec::with_capacity(faces.len()),
             corners: Vec::new(),
             volume: 0.0,
@@ -128,18 +134,28 @@ impl Convex {
         self.data.middle
     }
 
-    /// The corner furthest along `d`.
+    /// The corner furthest along `d`; of equals the first.
     #[inline]
     pub fn support(&self, d: Vec3) -> Vec3 {
-        let mut best = self.data.points[0];
-        let mut most = d.dot(best);
-        for &p in &self.data.points[1..] {
-            let along = d.dot(p);
-            if along > most {
-                (best, most) = (p, along);
+        // Four corners at a time without a branch: which is furthest cannot be foretold.
+        let mut most = [f64::NEG_INFINITY; 4];
+        let mut place = [0u64; 4];
+        for (i, [x, y, z]) in self.data.blocks.iter().enumerate() {
+            for l in 0..4 {
+                let along = d.x * x[l] + d.y * y[l] + d.z * z[l];
+                let further = along > most[l];
+                most[l] = if further { along } else { most[l] };
+                place[l] = if further { i as u64 } else { place[l] };
             }
         }
-        best
+        let mut best = 0;
+        for l in 1..4 {
+            if most[l] > most[best] || (most[l] == most[best] && place[l] < place[best]) {
+                best = l;
+            }
+        }
+        let [x, y, z] = &self.data.blocks[place[best] as usize];
+        Vec3::new(x[best], y[best], z[best])
     }
 
     /// The face whose normal is most along `d`.

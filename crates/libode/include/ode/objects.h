@@ -59,6 +59,21 @@ ODE_API void dWorldStepFast1(dWorldID world, dReal stepsize, int max_iterations)
 ODE_API void dWorldSetAutoEnableDepthSF1(dWorldID world, int depth);
 ODE_API int dWorldGetAutoEnableDepthSF1(dWorldID world);
 
+/* Of the newest ODE: limits for the threads of a step, those that `param_set` names (0 is none). */
+enum {
+    dWSTP_WorldIslandsIterationMaxThreads = 1,
+    dWSTP_IslandSteppingMaxThreads = 2,
+    dWSTP_LCPSolvingMaxThreads = 4
+};
+typedef struct {
+    unsigned int param_set;
+    unsigned int world_islands_iteration_max_threads;
+    unsigned int island_stepping_max_threads;
+    unsigned int lcp_solving_max_threads;
+} dWorldSteppingThreadingParameters;
+ODE_API void dWorldSetSteppingThreadingParameters(dWorldID world, const dWorldSteppingThreadingParameters *limits);
+ODE_API void dWorldGetSteppingThreadingParameters(dWorldID world, dWorldSteppingThreadingParameters *limits);
+
 /* Contacts: the greatest velocity at which depth is corrected, and the depth that is left be. */
 ODE_API dReal dWorldGetContactMaxCorrectingVel(dWorldID world);
 ODE_API dReal dWorldGetContactSurfaceLayer(dWorldID world);

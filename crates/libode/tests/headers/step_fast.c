@@ -1,4 +1,4 @@
-/* The StepFast functions, which the installed library lacks: each line is a name and 1 if it holds. */
+/* The StepFast functions and those of the newest ODE, which the installed library lacks: each line is a name and 1 if it holds. */
 #include <math.h>
 #include <ode/ode.h>
 #include <stdio.h>
@@ -117,6 +117,43 @@ int main(void) {
         holds("layers", awake == k + 1 && dBodyGetPosition(b[5])[2] == 0 && dBodyGetLinearVel(b[5])[2] == 0);
         dWorldDestroy(fast);
     }
+    /* Limits for threads: only those that are named are written and read. */
+    {
+        dWorldSteppingThreadingParameters set = {7, 3, 4, 5}, got = {7, 9, 9, 9};
+        fast = dWorldCreate();
+        dWorldGetSteppingThreadingParameters(fast, &got);
+        holds("limits at first", got.world_islands_iteration_max_threads == 0 &&
+              got.island_stepping_max_threads == 0 && got.lcp_solving_max_threads == 1);
+        set.param_set = dWSTP_WorldIslandsIterationMaxThreads | dWSTP_LCPSolvingMaxThreads;
+        dWorldSetSteppingThreadingParameters(fast, &set);
+        holds("the islands' limit", dWorldGetStepIslandsProcessingMaxThreadCount(fast) == 3);
+        dWorldGetSteppingThreadingParameters(fast, &got);
+        holds("limits", got.island_stepping_max_threads == 0 && got.lcp_solving_max_threads == 5);
+        got.param_set = dWSTP_IslandSteppingMaxThreads;
+        got.lcp_solving_max_threads = 99;
+        dWorldGetSteppingThreadingParameters(fast, &got);
+        holds("only what is named", got.lcp_solving_max_threads == 99);
+        dWorldDestroy(fast);
+    }
+    /* PU joints have torques about both axes. */
+    {
+        dJointID joint;
+        dReal torque1, torque2;
+        fast = dWorldCreate();
+        joint = dJointCreatePU(fast, 0);
+        b[0] = dBodyCreate(fast);
+        b[1] = dBodyCreate(fast);
+        dJointAttach(joint, b[0], b[1]);
+        dJointSetPUAxis1(joint, 1, 0, 0);
+        dJointSetPUAxis2(joint, 0, 1, 0);
+        dJointAddPUTorques(joint, 2, 3);
+        torque1 = dBodyGetTorque(b[0])[0];
+        torque2 = dBodyGetTorque(b[0])[1];
+        holds("PU torques", torque1 == 2 && torque2 == 3 && dBodyGetTorque(b[1])[0] == -2);
+        dWorldDestroy(fast);
+    }
+    holds("the manual's spelling", dJointGetType(dJointCreatePlane2d(fast = dWorldCreate(), 0)) == dJointTypePlane2D);
+    dWorldDestroy(fast);
     dCloseODE();
     printf("end\n");
     return 0;

@@ -184,7 +184,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             let mut parts = Vec::new();
             let mut touching = None;
             for state in State::ALL {
-                if option("--state").is_some_and(|s| !format!("{state:?}").to_lowercase().contains(s.as_str())) {
+                if option("--state")
+                    .is_some_and(|s| !format!("{state:?}").to_lowercase().contains(s.as_str()))
+                {
                     continue;
                 }
                 let samples =
