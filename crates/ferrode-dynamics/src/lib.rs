@@ -43,6 +43,7 @@ mod world;
 pub use body::{Body, BodyKey, FiniteRotation, MovedCallback};
 pub use damping::Damping;
 pub use error::Error;
+pub use ferrode_lcp::sor::DynamicIterations;
 #[doc(hidden)]
 pub use foreign::{BodyState, MovedObserver};
 pub use group::GroupKey;

@@ -18,6 +18,12 @@ pub struct StepReport {
     pub lcp_failures: usize,
     /// How `Direct` solved each island that has rows, in the order of the islands.
     pub solves: Vec<IslandSolve>,
+    /// Islands that `Quick` solved in fewer sweeps than set ([`crate::QuickSettings::dynamic`]).
+    pub premature_exits: usize,
+    /// Islands that took `Quick` some of the added sweeps.
+    pub prolonged_solves: usize,
+    /// Islands that took `Quick` all of the added sweeps.
+    pub full_extra_solves: usize,
     /// Bodies that this step took out of the simulation because they or the forces on them were not finite.
     pub quarantined: Vec<BodyKey>,
 }
@@ -63,6 +69,16 @@ impl IslandSolve {
 }
 
 impl StepReport {
+    pub(crate) fn count_exit(&mut self, exit: Option<ferrode_lcp::sor::SorExit>) {
+        use ferrode_lcp::sor::SorExit;
+        match exit {
+            Some(SorExit::Premature) => self.premature_exits += 1,
+            Some(SorExit::Prolonged) => self.prolonged_solves += 1,
+            Some(SorExit::FullExtra) => self.full_extra_solves += 1,
+            Some(SorExit::Completed) | None => {}
+        }
+    }
+
     pub(crate) fn count_island(&mut self, bodies: usize, rows: usize, solved: crate::solve::Solved) {
         self.islands += 1;
         self.bodies += bodies;

@@ -158,7 +158,11 @@ impl World {
                     }
                     solved
                 }
-                Stepper::Quick => quick::solve(island, h, &self.params.quick, random, quick),
+                Stepper::Quick => {
+                    let solved = quick::solve(island, h, &self.params.quick, random, quick);
+                    report.count_exit(quick.exit);
+                    solved
+                }
             };
             report.count_island(bodies.len(), island.rows.len(), solved);
             self.write_feedback(island);

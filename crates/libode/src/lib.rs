@@ -8,12 +8,13 @@
 //! - A function's work gives an outcome; faults are raised by the C shim when the work has returned (`fault`).
 //! - Only records are touched while a callback of the program's runs; the engine's world is lent to it (`stepping`).
 //!
-//! `unsafe` stays in `real`, `numbers`, `slab`, `fault`, `record`, `memory`, `geom::kept` and at calls of the program's functions.
+//! `unsafe` stays in `real`, `numbers`, `slab`, `fault`, `record`, `memory`, `geom::kept`, `dynamic_iterations` and at calls of the program's functions.
 #![allow(non_snake_case)]
 
 mod body;
 mod contact;
 mod cooperative;
+mod dynamic_iterations;
 mod errors;
 mod export_dif;
 mod fault;

@@ -99,6 +99,13 @@ impl<T: Copy, const N: usize> In<T, N> {
     }
 }
 
+impl<T, const N: usize> In<T, N> {
+    /// The pointer itself, to be kept.
+    pub fn address(self) -> *const T {
+        self.0
+    }
+}
+
 /// A pointer to room for `N` values that the function writes; the contract is [`In`]'s.
 #[repr(transparent)]
 #[derive(Clone, Copy)]

@@ -63,6 +63,7 @@ pub struct StepSettings {
     pub max_threads: Cell<c_uint>,
     /// Threads for one island, and for one solve less one (so that the default is 0): kept for their reader.
     island_threads: Cell<[c_uint; 2]>,
+    pub dynamic: crate::dynamic_iterations::Settings,
     reserve: Cell<ReserveInfo>,
     manager: Cell<Option<MemoryFunctions>>,
     block: Cell<Option<Block>>,
@@ -150,6 +151,9 @@ pub fn step(world: &'static WorldRecord, method: Method, stepsize: Real) -> Outc
     world.publish_all();
     write_feedback(world);
     let report = report.map_err(|_| Fault::user("stepsize must be > 0"))?;
+    if matches!(method, Method::Plain(Stepper::Quick)) {
+        crate::dynamic_iterations::count(world, &report);
+    }
     for _ in 0..report.lcp_failures {
         message(3, "LCP internal error: no step length", "");
     }

@@ -159,7 +159,8 @@ export! {
     /// ODE would take a negative number for some thousand million sweeps; here it stands for none.
     fn dWorldSetQuickStepNumIterations(world: WorldId, count: c_int) {
         world.get()?.settings.quick_iterations.set(Some(count));
-        quick(world, |q| q.iterations = count.max(0).cast_unsigned())?
+        quick(world, |q| q.iterations = count.max(0).cast_unsigned())?;
+        crate::dynamic_iterations::apply(world.get()?)?
     }
     fn dWorldGetQuickStepNumIterations(world: WorldId) -> c_int {
         let asked = world.get()?.settings.quick_iterations.get();

@@ -139,9 +139,12 @@ fn only_public_names_are_exported() {
     let newer = [
         "dGeomTriMeshDataGet",
         "dJointAddPUTorques",
+        "dWorldAttachQuickStepDynamicIterationStatisticsSink",
         "dWorldGetAutoEnableDepthSF1",
+        "dWorldGetQuickStepDynamicIterationParameters",
         "dWorldGetSteppingThreadingParameters",
         "dWorldSetAutoEnableDepthSF1",
+        "dWorldSetQuickStepDynamicIterationParameters",
         "dWorldSetSteppingThreadingParameters",
         "dWorldStepFast1",
     ];

@@ -4,7 +4,9 @@ use super::{FreeMotion, Solved, free_motions, right_hand_side};
 use crate::rows::NO_FRICTION_INDEX;
 use crate::step::Island;
 use crate::world::QuickSettings;
-use ferrode_lcp::sor::{InfTimesZero, NO_BODY, SorBody, SorParams, SorRow, SorWorkspace, solve_sor_rows};
+use ferrode_lcp::sor::{
+    InfTimesZero, NO_BODY, SorBody, SorExit, SorParams, SorRow, SorWorkspace, solve_sor_rows,
+};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Vec3};
 
@@ -15,6 +17,8 @@ pub(crate) struct Workspace {
     bodies: Vec<SorBody>,
     sor: SorWorkspace,
     solved: bool,
+    /// What ended the last solve.
+    pub exit: Option<SorExit>,
 }
 
 /// Finds the forces of an island's rows.
@@ -29,6 +33,7 @@ pub(crate) fn solve(
     island.lambda.clear();
     island.lambda.resize(m, 0.0);
     work.solved = false;
+    work.exit = None;
     if m == 0 {
         return Solved::Completely;
     }
@@ -67,13 +72,14 @@ pub(crate) fn solve(
         } else {
             InfTimesZero::Unbounded
         },
-        dynamic: None,
+        dynamic: settings.dynamic,
     };
     let result = solve_sor_rows(&work.bodies, m, rows, &params, &mut |n| random.next_below(n), &mut work.sor);
     match result {
         Ok(report) if report.finite => {
             lambda.copy_from_slice(work.sor.lambda());
             work.solved = true;
+            work.exit = Some(report.exit);
             Solved::Completely
         }
         // No forces at all rather than forces that are no numbers.

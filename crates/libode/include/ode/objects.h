@@ -59,6 +59,30 @@ ODE_API void dWorldStepFast1(dWorldID world, dReal stepsize, int max_iterations)
 ODE_API void dWorldSetAutoEnableDepthSF1(dWorldID world, int depth);
 ODE_API int dWorldGetAutoEnableDepthSF1(dWorldID world);
 
+/* Of the newest ODE: sweeps of iterative steps by need. A sweep that changes accelerations by less than the first number ends
+   the step; so many more sweeps than set, a factor, may be made, while changes are above the third. Off (0, 0) at first, as
+   in 0.16.2; newer ODEs begin with the defaults below. Null leaves a number as it is. */
+#define dWORLDQUICKSTEP_ITERATION_COUNT_DEFAULT 20U
+#define dWORLDQUICKSTEP_ITERATION_PREMATURE_EXIT_DELTA_DEFAULT 1e-8f
+#define dWORLDQUICKSTEP_MAXIMAL_EXTRA_ITERATION_COUNT_FACTOR_DEFAULT 1.0f
+#define dWORLDQUICKSTEP_EXTRA_ITERATION_REQUIREMENT_DELTA_DEFAULT 1e-2f
+ODE_API void dWorldSetQuickStepDynamicIterationParameters(dWorldID world, const dReal *premature_exit_delta,
+        const dReal *max_extra_factor, const dReal *extra_requirement_delta);
+ODE_API void dWorldGetQuickStepDynamicIterationParameters(dWorldID world, dReal *premature_exit_delta,
+        dReal *max_extra_factor, dReal *extra_requirement_delta);
+
+/* Counts of what that did: islands stepped, ended early, prolonged, prolonged to the last. struct_size is the record's
+   size. The record has to last until another is attached, or null. */
+typedef struct {
+    unsigned int struct_size;
+    duint32 iteration_count;
+    duint32 premature_exits;
+    duint32 prolonged_execs;
+    duint32 full_extra_execs;
+} dWorldQuickStepIterationCount_DynamicAdjustmentStatistics;
+ODE_API int dWorldAttachQuickStepDynamicIterationStatisticsSink(dWorldID world,
+        dWorldQuickStepIterationCount_DynamicAdjustmentStatistics *sink);
+
 /* Of the newest ODE: limits for the threads of a step, those that `param_set` names (0 is none). */
 enum {
     dWSTP_WorldIslandsIterationMaxThreads = 1,

@@ -135,6 +135,43 @@ int main(void) {
         holds("only what is named", got.lcp_solving_max_threads == 99);
         dWorldDestroy(fast);
     }
+    /* Sweeps by need: with both numbers 0 as many as set; a hanging chain at rest needs fewer, a swinging one more. */
+    {
+        dWorldQuickStepIterationCount_DynamicAdjustmentStatistics seen = {sizeof seen, 0, 0, 0, 0}, bad = {4, 0, 0, 0, 0};
+        dReal early = -1, factor = -1, late = -1;
+        double off, on;
+        fast = dWorldCreate();
+        dWorldSetGravity(fast, 0, 0, -10);
+        chain(fast, b, 5);
+        holds("no small record", dWorldAttachQuickStepDynamicIterationStatisticsSink(fast, &bad) == 0);
+        holds("a record", dWorldAttachQuickStepDynamicIterationStatisticsSink(fast, &seen) == 1);
+        dWorldGetQuickStepDynamicIterationParameters(fast, &early, &factor, &late);
+        holds("off at first", early == 0 && factor == 0 && fabs(late - 0.01) < 1e-6);
+        for (i = 0; i < 50; i++) dWorldQuickStep(fast, REAL(0.01));
+        holds("as many as set", seen.iteration_count == 50 && seen.premature_exits == 0 && seen.prolonged_execs == 0 &&
+              seen.full_extra_execs == 0);
+        off = fabs(apart(b[4], b[3]) - 1);
+        factor = 3;
+        dWorldSetQuickStepDynamicIterationParameters(fast, 0, &factor, 0);
+        for (i = 0; i < 50; i++) dWorldQuickStep(fast, REAL(0.01));
+        holds("more when swinging", seen.prolonged_execs + seen.full_extra_execs > 40 && seen.premature_exits == 0);
+        on = fabs(apart(b[4], b[3]) - 1);
+        printf("# stretched %.3g with 20 sweeps, %.3g with up to 80\n", off, on);
+        dWorldDestroy(fast);
+
+        fast = dWorldCreate();
+        chain(fast, b, 5);
+        seen.premature_exits = 0;
+        early = REAL(1e-8);
+        dWorldSetQuickStepDynamicIterationParameters(fast, &early, 0, 0);
+        dWorldAttachQuickStepDynamicIterationStatisticsSink(fast, &seen);
+        for (i = 0; i < 10; i++) dWorldQuickStep(fast, REAL(0.01));
+        holds("fewer at rest", seen.premature_exits == 10);
+        dWorldAttachQuickStepDynamicIterationStatisticsSink(fast, 0);
+        dWorldQuickStep(fast, REAL(0.01));
+        holds("detached", seen.premature_exits == 10);
+        dWorldDestroy(fast);
+    }
     /* PU joints have torques about both axes. */
     {
         dJointID joint;
