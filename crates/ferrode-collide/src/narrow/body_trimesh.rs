@@ -1,7 +1,8 @@
+use super::convex::touch;
 use super::reduce::reduce;
 use super::support::Body;
 use super::triangle::{Facet, body_facet};
-use crate::{Contacts, Frame, Shape, TriMesh};
+use crate::{Contacts, Frame, GeomContact, Shape, TriMesh};
 use ferrode_math::{Aabb, Vec3};
 
 impl TriMesh {
@@ -38,6 +39,7 @@ pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: 
                 body_facet(&body, middle, &facet, &mut all);
             }
         });
+        drop_long_ways(&body, mesh, &mut all);
     }
     reduce(out, body.reach());
     for c in out.added() {
@@ -46,4 +48,39 @@ pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: 
         // From midway to the body's own surface, as over a plane.
         c.point.position -= c.point.normal * (0.5 * c.point.depth);
     }
+}
+
+/// Cosines nearer than this are one direction.
+const SAME: f64 = 1e-6;
+
+/// Drops contacts with faces that a body leaves sooner over an edge or corner nearby: if what parts it from the edge parts it
+/// from the face as well, the face would push it the long way.
+fn drop_long_ways(body: &Body<'_>, mesh: &TriMesh, out: &mut Contacts<'_>) {
+    let list = out.added();
+    let on_face = |c: &GeomContact| c.point.normal.dot(mesh.normal(c.side2 as u32)) > 1.0 - SAME;
+    // Contacts over edges first.
+    let mut edges = 0;
+    for i in 0..list.len() {
+        if !on_face(&list[i]) {
+            list.swap(i, edges);
+            edges += 1;
+        }
+    }
+    let mut kept = edges;
+    for i in edges..list.len() {
+        let c = list[i];
+        let sooner = list[..edges].iter().any(|k| {
+            k.point.depth < c.point.depth * (1.0 - SAME) && {
+                let step = k.point.normal * (k.point.depth * (1.0 + SAME));
+                let mut moved = *body;
+                moved.center += step;
+                touch(&moved, &Body::triangle(mesh.corners(c.side2 as u32))).is_none()
+            }
+        });
+        if !sooner {
+            list[kept] = c;
+            kept += 1;
+        }
+    }
+    out.truncate(kept);
 }

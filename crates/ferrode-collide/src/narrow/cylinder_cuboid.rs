@@ -2,6 +2,7 @@
 
 use super::convex::touch;
 use super::manifold::add_manifold;
+use super::polygon::Polygon;
 use super::support::Body;
 use crate::{Contacts, Cuboid, Cylinder, Frame};
 use core::f64::consts::FRAC_PI_8;
@@ -172,14 +173,14 @@ impl Pair<'_> {
             (2, 1, 0)
         };
         let sign = if local[face] > 0.0 { 1.0 } else { -1.0 };
-        let mut polygon = Polygon::default();
-        for (si, sj) in [(1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
-            let mut corner = Vec3::ZERO;
-            corner[face] = sign * self.half[face];
-            corner[i] = si * self.half[i];
-            corner[j] = sj * self.half[j];
-            polygon.push(self.fb.vector_to_world(corner));
-        }
+        let mut polygon =
+            Polygon::new(&[(1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(si, sj)| {
+                let mut corner = Vec3::ZERO;
+                corner[face] = sign * self.half[face];
+                corner[i] = si * self.half[i];
+                corner[j] = sj * self.half[j];
+                self.fb.vector_to_world(corner)
+            }));
         // The cap that faces the box, and the inward normal of its plane.
         let inward = if n.dot(self.u) > 0.0 { self.u } else { -self.u };
         let cap = self.between - inward * (0.5 * self.cylinder.length());
@@ -190,43 +191,12 @@ impl Pair<'_> {
             polygon.clip(-radial, radial.dot(cap) + self.cylinder.radius());
         }
         let reach = self.cylinder_reach(n) - self.between.dot(n);
-        for &p in &polygon.points[..polygon.count] {
+        for &p in polygon.corners() {
             let depth = reach + p.dot(n);
             if depth > 0.0 {
                 out.push(p + self.fb.position, n, depth);
             }
         }
-    }
-}
-
-#[derive(Default)]
-struct Polygon {
-    points: [Vec3; 16],
-    count: usize,
-}
-
-impl Polygon {
-    fn push(&mut self, p: Vec3) {
-        if self.count < self.points.len() {
-            self.points[self.count] = p;
-            self.count += 1;
-        }
-    }
-
-    /// Keeps what lies at or above the plane n · x + d = 0.
-    fn clip(&mut self, n: Vec3, d: f64) {
-        let mut kept = Self::default();
-        for i in 0..self.count {
-            let (p, q) = (self.points[(i + self.count - 1) % self.count], self.points[i]);
-            let (hp, hq) = (n.dot(p) + d, n.dot(q) + d);
-            if hp >= 0.0 {
-                kept.push(p);
-            }
-            if (hp > 0.0 && hq < 0.0) || (hp < 0.0 && hq > 0.0) {
-                kept.push(p - (p - q) * (hp / (hp - hq)));
-            }
-        }
-        *self = kept;
     }
 }
 

@@ -155,7 +155,7 @@ const PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Cuboid, Plane, cuboid_plane),                 // Plane
         turn!(Cuboid, Ray, ray_cuboid),                     // Ray
         BODIES,                                             // Convex
-        MESH,                                               // TriMesh
+        pair!(Cuboid, TriMesh, cuboid_trimesh),             // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
         FIELD_SWAPPED,                                      // Heightfield
@@ -169,7 +169,7 @@ const PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Capsule, Plane, capsule_plane),               // Plane
         turn!(Capsule, Ray, ray_capsule),                   // Ray
         BODIES,                                             // Convex
-        MESH,                                               // TriMesh
+        pair!(Capsule, TriMesh, capsule_trimesh),           // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
         FIELD_SWAPPED,                                      // Heightfield
@@ -183,7 +183,7 @@ const PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
         pair!(Cylinder, Plane, cylinder_plane),             // Plane
         turn!(Cylinder, Ray, ray_cylinder),                 // Ray
         BODIES,                                             // Convex
-        MESH,                                               // TriMesh
+        pair!(Cylinder, TriMesh, cylinder_trimesh),         // TriMesh
         BODIES,                                             // Ellipsoid
         BODIES,                                             // Cone
         FIELD_SWAPPED,                                      // Heightfield
@@ -233,9 +233,9 @@ const PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     // TriMesh
     [
         swap!(TriMesh, Sphere, sphere_trimesh),             // Sphere
-        MESH_SWAPPED,                                       // Cuboid
-        MESH_SWAPPED,                                       // Capsule
-        MESH_SWAPPED,                                       // Cylinder
+        swap!(TriMesh, Cuboid, cuboid_trimesh),             // Cuboid
+        swap!(TriMesh, Capsule, capsule_trimesh),           // Capsule
+        swap!(TriMesh, Cylinder, cylinder_trimesh),         // Cylinder
         pair!(TriMesh, Plane, trimesh_plane),               // Plane
         swap!(TriMesh, Ray, ray_trimesh),                   // Ray
         MESH_SWAPPED,                                       // Convex

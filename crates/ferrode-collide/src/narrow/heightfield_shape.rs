@@ -1,4 +1,5 @@
 use super::dispatch::collide_frames;
+use super::heightfield_trimesh::heightfield_trimesh;
 use super::reduce::reduce;
 use crate::{CollideOptions, Contacts, Convex, Frame, GeomContact, Heightfield, Plane, Shape};
 use ferrode_math::{Aabb, Vec3};
@@ -98,6 +99,9 @@ fn collide_zone(
         let e = aabb.extent();
         e.x > 1.5 * sx || e.z > 1.5 * sz
     };
+    if let Shape::TriMesh(mesh) = shape {
+        return heightfield_trimesh(field, zone, mesh, local, out);
+    }
     let mut tiles = Vec::new();
     let mut used: Vec<[i64; 2]> = Vec::new();
     for x in zone.x[0]..zone.x[1] {

@@ -176,10 +176,6 @@ impl Found {
         }
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = &(Vec3, f64)> {
-        self.list[..self.count].iter()
-    }
-
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -225,13 +221,6 @@ pub(crate) fn add_manifold(a: &Body<'_>, b: &Body<'_>, touch: &Touch, origin: Ve
         found.push(single.0, single.1);
     }
     add(&found, n, origin, out);
-}
-
-/// The part of `other`, seen along `toward`, that lies over and below the face of `body` seen along `normal`.
-pub(super) fn below_face(body: &Body<'_>, normal: Vec3, other: &Body<'_>, toward: Vec3) -> Found {
-    let mut found = Found::default();
-    clip_to_face(&Feature::of(body, normal), &Feature::of(other, toward), &mut found);
-    found
 }
 
 /// Adds the contacts of `a` with the face of `b` that has the normal `n`, and no others.

@@ -34,6 +34,16 @@ pub(crate) fn reduce(out: &mut Contacts<'_>, size: f64) {
     out.truncate(count);
 }
 
+/// If there are more contacts than wanted, the deepest and those that differ most stay, as in [`reduce`].
+pub(crate) fn keep_wanted(out: &mut Contacts<'_>, size: f64) {
+    let wanted = out.capacity();
+    let list = out.added();
+    if list.len() > wanted {
+        spread(list, wanted, size);
+        out.truncate(wanted);
+    }
+}
+
 /// Brings the `wanted` contacts to the front.
 fn spread(list: &mut [GeomContact], wanted: usize, size: f64) {
     let deepest =

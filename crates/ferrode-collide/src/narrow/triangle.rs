@@ -37,6 +37,20 @@ impl Facet {
         q
     }
 
+    /// The corner furthest along `d`, or the middle of the edge if two are as far.
+    pub fn furthest(&self, d: Vec3) -> Vec3 {
+        let far = self.corners.map(|p| d.dot(p));
+        let high = far[0].max(far[1]).max(far[2]);
+        let near = high - SAME * self.scale();
+        let mut sum = Vec3::ZERO;
+        let mut count = 0.0;
+        for (p, _) in self.corners.iter().zip(far).filter(|(_, f)| *f >= near) {
+            sum += *p;
+            count += 1.0;
+        }
+        sum * (1.0 / count)
+    }
+
     /// A length like the triangle's.
     fn scale(&self) -> f64 {
         (self.corners[1] - self.corners[0]).abs_max() + (self.corners[2] - self.corners[0]).abs_max()
@@ -50,6 +64,8 @@ impl Facet {
 
 /// Cosines nearer than this are one direction.
 pub(crate) const SAME: f64 = 1e-6;
+/// Sines less than this are rounding.
+const LEAN: f64 = 1e-9;
 
 /// Adds the contacts of a body with a triangle, normals into the body, if the body's middle is before the triangle.
 ///
@@ -58,7 +74,7 @@ pub(crate) const SAME: f64 = 1e-6;
 /// face that is over the triangle.
 pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Contacts<'_>) {
     let n = facet.normal;
-    if facet.height(middle) < 0.0 || facet.height(body.support(-n)) > body.margin {
+    if !faces(body, middle, facet) {
         return;
     }
     let triangle = Body::triangle(facet.corners);
@@ -86,6 +102,23 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     out.truncate(kept);
 }
 
+/// Whether a body's middle is before a triangle, and the body reaches its plane.
+fn faces(body: &Body<'_>, middle: Vec3, facet: &Facet) -> bool {
+    facet.height(middle) >= 0.0 && facet.height(body.support(-facet.normal)) <= body.margin
+}
+
+/// The contact of a body with a triangle that it does not meet, although its lowest point is below it: see
+/// [`add_hidden_contact`].
+pub(super) fn hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Contacts<'_>) {
+    if faces(body, middle, facet) {
+        let first = out.len();
+        add_hidden_contact(body, middle, facet, out);
+        for c in &mut out.added()[first..] {
+            c.side2 = facet.index;
+        }
+    }
+}
+
 /// The lowest point of a body that entered the surface over a neighbour and so does not meet this triangle, although it
 /// lies below it.
 fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Contacts<'_>) {
@@ -106,8 +139,11 @@ fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Co
     out.push(lowest + n * (0.5 * depth), n, depth);
 }
 
-/// Whether the body leaves sooner past the triangle beyond a convex edge, which also has its middle before it: then a
-/// contact with this one's face would push it the long way.
+/// Halvings of the range of directions over a convex edge or corner.
+const HALVINGS: usize = 8;
+
+/// Whether the body leaves sooner over a convex edge or corner, the triangles beyond which have its middle before them too:
+/// then a contact with this one's face would push it the long way.
 pub(crate) fn nearer_elsewhere(
     body: &Body<'_>,
     facet: &Facet,
@@ -118,13 +154,57 @@ pub(crate) fn nearer_elsewhere(
     if normal.dot(facet.normal) < 1.0 - SAME {
         return false;
     }
-    (0..3).any(|e| match facet.neighbours[e] {
-        Neighbour::Convex(other) if other.dot(middle - facet.corners[e]) > 0.0 => {
-            let depth = other.dot(facet.corners[e] - body.support(-other)) + body.margin;
-            depth >= 0.0 && depth < found * (1.0 - 1e-6)
-        }
-        _ => false,
+    let enough = found * (1.0 - 1e-6);
+    let beyond = [0, 1, 2].map(|e| match facet.neighbours[e] {
+        Neighbour::Convex(other) if other.dot(middle - facet.corners[e]) > 0.0 => Some(other),
+        _ => None,
+    });
+    (0..3).any(|e| {
+        let Some(over) = beyond[e] else { return false };
+        let corner = facet.corners[e];
+        let depth = |d: Vec3| d.dot(corner - body.support(-d)) + body.margin;
+        // Between the two normals; then, at the corner where the edge begins, between those of three triangles.
+        let fan = [facet.normal, over, beyond[(e + 2) % 3].unwrap_or(over)];
+        least(&fan[..2], &depth, enough) || (beyond[(e + 2) % 3].is_some() && least(&fan, &depth, enough))
     })
+}
+
+/// Whether a depth between nothing and `enough` is found among the directions that some normals span, by halving the
+/// range towards the least.
+fn least(fan: &[Vec3], depth: &impl Fn(Vec3) -> f64, enough: f64) -> bool {
+    let mut corners = [Vec3::ZERO; 3];
+    corners[..fan.len()].copy_from_slice(fan);
+    let corners = &mut corners[..fan.len()];
+    let mut best = (f64::INFINITY, 0);
+    for (i, &d) in corners.iter().enumerate() {
+        let x = depth(d);
+        if x < best.0 {
+            best = (x, i);
+        }
+    }
+    let mut center = corners[best.1];
+    for _ in 0..HALVINGS {
+        // Those at half the way from the least so far to each end, and between them.
+        let mut next = (best.0, center);
+        for i in 0..corners.len() {
+            for d in [center + corners[i], corners[i] + corners[(i + 1) % corners.len()]] {
+                let Some(d) = d.normalized() else { continue };
+                let x = depth(d);
+                if (0.0..enough).contains(&x) {
+                    return true;
+                }
+                if x < next.0 {
+                    next = (x, d);
+                }
+            }
+        }
+        best.0 = next.0;
+        for d in corners.iter_mut() {
+            *d = (*d + next.1).normalized_or(next.1);
+        }
+        center = next.1;
+    }
+    (0.0..enough).contains(&best.0)
 }
 
 /// Whether a touch is at an edge that the surface goes on beyond without a bend outward.
@@ -165,6 +245,38 @@ pub(crate) fn allowed(facet: &Facet, t: &Touch) -> bool {
         }
     }
     true
+}
+
+/// What a surface says of a contact that has another normal than the triangle's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// Nothing speaks against it.
+    Sound,
+    /// The normal points into the triangle: right only if a triangle that faces it is touched as well.
+    FromBehind,
+    /// The point is at an edge beyond which the surface goes on flat or rises, and the normal leans over that edge: there is
+    /// nothing that could push that way.
+    Ghost,
+}
+
+/// Judges the normal of a contact at a point of the triangle.
+pub(super) fn judge(facet: &Facet, normal: Vec3, point: Vec3) -> Verdict {
+    let along = normal.dot(facet.normal);
+    let lean = (normal - facet.normal * along).length();
+    if along > 0.0 && lean <= LEAN {
+        return Verdict::Sound;
+    }
+    if along < -LEAN {
+        return Verdict::FromBehind;
+    }
+    let scale = facet.scale();
+    let ghost = |e: usize| {
+        let out = facet.outward(e);
+        facet.neighbours[e] == Neighbour::FlatOrConcave
+            && normal.dot(out) > LEAN
+            && out.dot(facet.corners[e] - point) <= 1e-6 * scale
+    };
+    if (0..3).any(ghost) { Verdict::Ghost } else { Verdict::Sound }
 }
 
 /// The box around a body, in the coordinates it is placed in.

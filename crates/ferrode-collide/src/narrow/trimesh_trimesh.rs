@@ -1,14 +1,26 @@
-use super::manifold::{Found, below_face};
-use super::reduce::reduce;
-use super::support::Body;
-use super::triangle::Facet;
+use super::polygon::Polygon;
+use super::reduce::keep_wanted;
+use super::triangle::{Facet, Verdict, judge};
 use super::triangle_pairs::triangle_pairs;
-use crate::shape::Neighbour;
 use crate::{Contacts, Frame, GeomContact, TriMesh};
-use ferrode_math::Vec3;
+use ferrode_math::{Aabb, Vec3};
 
-/// Two meshes: for each two triangles that cross, what of the one lies behind the other, over it; of the two ways the
-/// one with less depth. Edges against edges are not told apart from that.
+/// Points of a triangle as deep as its deepest, to this, in metres, are contacts too.
+const BAND: f64 = 1e-6;
+/// Contacts nearer than this are one.
+const ONE: f64 = 1e-4;
+/// Depths that differ by less are one.
+const EQUAL: f64 = 1e-5;
+/// A contact whose point is nearer to the surface elsewhere than this share of its depth is none.
+const NEARER: f64 = 0.5;
+
+/// Two meshes: for each two triangles that cross, the deepest points of the one behind the other and over it; of the two
+/// ways the one with less depth. Contacts lie on the mesh that reaches into the other. Contacts at one place are one: the
+/// deeper, or, as deep, with the mean normal.
+///
+/// That is ODE's rule. Edges against edges are not told apart from that, and a wall may report how far it is behind the
+/// far side of the other mesh: contacts from which the surface is less than half as far away elsewhere are left out, and those
+/// beyond which the mesh goes on deeper without a bend.
 pub fn trimesh_trimesh(a: &TriMesh, fa: &Frame, b: &TriMesh, fb: &Frame, out: &mut Contacts<'_>) {
     // In a's coordinates.
     let local = Frame::new(fa.point_to_local(fb.position), fa.rotation.transpose() * fb.rotation);
@@ -21,15 +33,28 @@ pub fn trimesh_trimesh(a: &TriMesh, fa: &Frame, b: &TriMesh, fb: &Frame, out: &m
                 normal: local.vector_to_world(tb.normal),
                 ..tb
             };
-            facets(&ta, &tb, &mut all);
+            if cross(&ta, &tb) {
+                let nearer_a = |p: Vec3, d: f64| is_near(a, p, d);
+                let nearer_b = |p: Vec3, d: f64| is_near(b, local.point_to_local(p), d);
+                facets(&ta, &tb, nearer_a, nearer_b, &mut all);
+            }
         });
     }
-    let size = a.bounds().extent().abs_max().min(b.bounds().extent().abs_max());
-    reduce(out, size);
+    keep_wanted(out, a.bounds().extent().abs_max().min(b.bounds().extent().abs_max()));
     for c in out.added() {
         c.point.position = fa.point_to_world(c.point.position);
         c.point.normal = fa.vector_to_world(c.point.normal);
     }
+}
+
+/// Whether a mesh has a triangle within `distance` of a point, all in its coordinates.
+fn is_near(mesh: &TriMesh, p: Vec3, distance: f64) -> bool {
+    let mut near = false;
+    mesh.tree().query(&Aabb::from_center(p, Vec3::splat(distance)), |i| {
+        near =
+            near || mesh.facet(i).is_some_and(|t| (t.nearest(p) - p).length_squared() < distance * distance);
+    });
+    near
 }
 
 /// Whether two triangles share a point: no separating axis among the two normals and the nine products of edges.
@@ -56,41 +81,77 @@ fn cross(a: &Facet, b: &Facet) -> bool {
     true
 }
 
-fn facets(a: &Facet, b: &Facet, out: &mut Contacts<'_>) {
-    if !cross(a, b) {
-        return;
-    }
-    // a behind b, and b behind a.
-    let behind_b = behind(a, b);
-    let behind_a = behind(b, a);
-    let (list, normal) = match (&behind_b, &behind_a) {
-        (Some((list, x)), Some((_, y))) if x <= y => (list, b.normal),
-        (Some((list, _)), None) => (list, b.normal),
-        (_, Some((list, _))) => (list, -a.normal),
-        (None, None) => return,
-    };
-    for &(p, depth) in list.iter() {
-        let mut c = GeomContact::new(p, normal, depth);
-        c.side1 = a.index;
-        c.side2 = b.index;
-        out.push_contact(c);
+fn facets(
+    a: &Facet,
+    b: &Facet,
+    nearer_a: impl Fn(Vec3, f64) -> bool,
+    nearer_b: impl Fn(Vec3, f64) -> bool,
+    out: &mut Contacts<'_>,
+) {
+    let (behind_b, behind_a) = (behind(a, b), behind(b, a));
+    let depth = |found: &Option<(Polygon, f64)>| found.as_ref().map_or(f64::INFINITY, |f| f.1);
+    // The other way only if the shorter one contradicts the surfaces.
+    let order = if depth(&behind_b) <= depth(&behind_a) { [true, false] } else { [false, true] };
+    for of_a in order {
+        let found = if of_a { &behind_b } else { &behind_a };
+        let Some((polygon, depth)) = *found else { continue };
+        // The triangle that reaches in, the one that it reaches through, and the contact's normal.
+        let (inner, surface, normal) = if of_a { (a, b, b.normal) } else { (b, a, -a.normal) };
+        let limit = NEARER * depth;
+        let mut any = false;
+        for &p in polygon.corners() {
+            if -surface.height(p) <= depth - BAND
+                || judge(inner, -surface.normal, p) == Verdict::Ghost
+                || if of_a { nearer_b(p, limit) } else { nearer_a(p, limit) }
+            {
+                continue;
+            }
+            let mut c = GeomContact::new(p, normal, depth);
+            c.side1 = a.index;
+            c.side2 = b.index;
+            add(c, out);
+            any = true;
+        }
+        if any {
+            return;
+        }
     }
 }
 
-/// What of `a` lies over and behind `b`, and how deep. `None` if nothing does, or if a's surface goes on deeper beyond
-/// an edge: then it is the neighbour there that tells the depth.
-fn behind(a: &Facet, b: &Facet) -> Option<(Found, f64)> {
-    let found = below_face(&Body::triangle(b.corners), b.normal, &Body::triangle(a.corners), -b.normal);
-    let &(middle, depth) = found.iter().max_by(|p, q| p.1.total_cmp(&q.1))?;
-    // Contacts lie midway between the surfaces.
-    let deepest = middle - b.normal * (0.5 * depth);
-    let scale = (a.corners[1] - a.corners[0]).abs_max() + (a.corners[2] - a.corners[0]).abs_max();
+/// What of `a` is over and behind `b`, and how deep; `None` if nothing is.
+fn behind(a: &Facet, b: &Facet) -> Option<(Polygon, f64)> {
+    let mut polygon = Polygon::new(&a.corners);
     for e in 0..3 {
-        let out = a.outward(e);
-        let on_edge = out.dot(a.corners[e] - deepest) < 1e-9 * scale;
-        if on_edge && a.neighbours[e] == Neighbour::FlatOrConcave && out.dot(b.normal) < -1e-9 {
-            return None;
+        let outward = b.outward(e);
+        polygon.keep_below(outward, outward.dot(b.corners[e]));
+    }
+    polygon.keep_below(b.normal, b.normal.dot(b.corners[0]));
+    let depth = polygon.corners().iter().map(|&p| -b.height(p)).reduce(f64::max)?;
+    Some((polygon, depth.max(0.0)))
+}
+
+/// Adds a contact, or, if there is one at its place, lets the two be one. Those that push against each other cancel.
+fn add(c: GeomContact, out: &mut Contacts<'_>) {
+    let list = out.added();
+    let Some(i) = list.iter().position(|k| (k.point.position - c.point.position).abs_max() < ONE) else {
+        out.push_contact(c);
+        return;
+    };
+    let k = &mut list[i];
+    if c.point.depth > k.point.depth + EQUAL {
+        *k = c;
+    } else if c.point.depth > k.point.depth - EQUAL {
+        match (k.point.normal + c.point.normal).normalized() {
+            Some(mean) => {
+                k.point.normal = mean;
+                // Of two triangles.
+                (k.side1, k.side2) = (-1, -1);
+            }
+            None => {
+                let last = list.len() - 1;
+                list.swap(i, last);
+                out.truncate(last);
+            }
         }
     }
-    Some((found, depth))
 }

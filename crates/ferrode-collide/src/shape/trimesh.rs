@@ -13,13 +13,15 @@ pub struct TriMesh {
     data: Arc<MeshData>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct MeshData {
     vertices: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     /// Zero for a triangle without area, which touches nothing.
     normals: Vec<Vec3>,
     neighbours: Vec<[Neighbour; 3]>,
+    /// See [`TriMesh::use_flags`].
+    use_flags: Vec<u8>,
     /// The first triangle at each vertex.
     first_triangle: Vec<u32>,
     tree: AabbTree,
@@ -82,6 +84,7 @@ impl TriMesh {
         };
         let normals: Vec<Vec3> = triangles.iter().map(normal).collect();
         let neighbours = neighbours(&vertices, &triangles, &normals);
+        let use_flags = use_flags(&vertices, &triangles, &normals);
         let mut first_triangle = vec![u32::MAX; vertices.len()];
         for (i, t) in triangles.iter().enumerate().rev() {
             for &v in t {
@@ -105,6 +108,7 @@ impl TriMesh {
                 triangles,
                 normals,
                 neighbours,
+                use_flags,
                 first_triangle,
                 tree,
                 bounds,
@@ -152,6 +156,22 @@ impl TriMesh {
     #[inline]
     pub fn neighbours(&self, i: u32) -> &[Neighbour; 3] {
         &self.data.neighbours[i as usize]
+    }
+
+    /// The same mesh with other edges and vertices to touch than [`TriMesh::new`] finds: for each triangle bits 0 to 2 the
+    /// edges, bits 3 to 5 the vertices (ODE's `dGeomTriMeshDataSet` with use flags). Only capsules ask for them.
+    pub fn with_use_flags(mut self, flags: Vec<u8>) -> Result<Self, ShapeError> {
+        if flags.len() != self.triangles().len() {
+            return Err(ShapeError { what: "number of use flags of a mesh", value: flags.len() as f64 });
+        }
+        Arc::make_mut(&mut self.data).use_flags = flags;
+        Ok(self)
+    }
+
+    /// Which edges and vertices of triangle `i` are its own to touch: bits 0 to 2 the edges, bits 3 to 5 the vertices. Each
+    /// edge that is not concave is one triangle's, and each vertex without concave edges (ODE's use flags).
+    pub(crate) fn use_flags(&self, i: u32) -> u8 {
+        self.data.use_flags[i as usize]
     }
 
     /// The first triangle that has vertex `v`, if any has.
@@ -228,6 +248,55 @@ fn neighbours(vertices: &[Vec3], triangles: &[[u32; 3]], normals: &[Vec3]) -> Ve
         }
     }
     found
+}
+
+fn use_flags(vertices: &[Vec3], triangles: &[[u32; 3]], normals: &[Vec3]) -> Vec<u8> {
+    let mut numbers = BTreeMap::new();
+    let place_of: Vec<u32> = vertices
+        .iter()
+        .map(|&v| {
+            let next = numbers.len() as u32;
+            *numbers.entry(place(v)).or_insert(next)
+        })
+        .collect();
+    let mut edges: BTreeMap<(u32, u32), Vec<(usize, usize)>> = BTreeMap::new();
+    for (i, t) in triangles.iter().enumerate() {
+        for e in 0..3 {
+            let (a, b) = (place_of[t[e] as usize], place_of[t[(e + 1) % 3] as usize]);
+            edges.entry((a.min(b), a.max(b))).or_default().push((i, e));
+        }
+    }
+    let mut flags = vec![0u8; triangles.len()];
+    let mut concave = vec![false; numbers.len()];
+    for ((a, b), users) in &edges {
+        let is_concave = users.len() >= 2 && {
+            let [(i, e), (j, f)] = [users[0], users[1]];
+            let p = |t: usize, k: usize| vertices[triangles[t][k % 3] as usize];
+            let (start, end, apex) = (p(i, e), p(i, e + 1), p(j, f + 2));
+            let along = (end - start).normalized_or(Vec3::ZERO);
+            let h = (apex - start) - along * along.dot(apex - start);
+            let rise = normals[i].dot(h);
+            rise > 0.0 && rise * rise >= 1e-12 * h.length_squared()
+        };
+        if is_concave {
+            concave[*a as usize] = true;
+            concave[*b as usize] = true;
+        } else {
+            let (i, e) = users[0];
+            flags[i] |= 1 << e;
+        }
+    }
+    let mut used = vec![false; numbers.len()];
+    for (i, t) in triangles.iter().enumerate() {
+        for k in 0..3 {
+            let v = place_of[t[k] as usize] as usize;
+            if !concave[v] && !used[v] {
+                used[v] = true;
+                flags[i] |= 8 << k;
+            }
+        }
+    }
+    flags
 }
 
 #[cfg(test)]

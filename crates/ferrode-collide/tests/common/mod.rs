@@ -79,7 +79,7 @@ impl Record {
         let number = |n: &Value| n.as_u64().unwrap() as u32;
         let triangle = |t: &Value| [number(&t[0]), number(&t[1]), number(&t[2])];
         let triangles = mesh["triangles"].as_array().unwrap().iter().map(triangle).collect();
-        TriMesh::new(vertices, triangles).unwrap()
+        TriMesh::new(vertices, triangles).unwrap().with_use_flags(use_flags(name)).unwrap()
     }
 
     fn hull(&self, name: &str) -> Convex {
@@ -132,6 +132,13 @@ impl Record {
         let rotation = Mat3::from_rows([[r[0], r[1], r[2]], [r[3], r[4], r[5]], [r[6], r[7], r[8]]]);
         Some((shape, Frame::new(vector(&g["pos"]), rotation)))
     }
+}
+
+/// The edges and vertices that libode lets each triangle of a recorded mesh touch (`dGeomTriMeshDataGet2` after both
+/// preprocessings). Which of the two triangles at an edge has it is by libode's sorting, and without meaning.
+fn use_flags(mesh: &str) -> Vec<u8> {
+    let all: Value = serde_json::from_str(include_str!("../data/use_flags.json")).unwrap();
+    all[mesh].as_array().unwrap().iter().map(|f| f.as_u64().unwrap() as u8).collect()
 }
 
 /// The recorded contacts of a case.
