@@ -11,9 +11,12 @@
 #[path = "../cpu.rs"]
 mod cpu;
 
-use ferrode_collide::manifold::{Axis, Manifold, Touching, convex_manifold};
+use ferrode_collide::manifold::{Axis, Manifold, Touching, Workspace, convex_manifold, manifolds};
 use ferrode_collide::pairs::{Motion, PairCache, PairSettings};
-use ferrode_collide::{CollideOptions, Cuboid, Frame, Plane, Shape, narrow};
+use ferrode_collide::{
+    Capsule, CollideOptions, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Frame, Plane, Shape, Sphere, TriMesh,
+    narrow,
+};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Pose, Quat, Vec3};
 
@@ -165,6 +168,125 @@ fn pile(name: &str, reps: usize, side: usize, shift: f64) {
     );
 }
 
+/// The kinds of bodies, of about a metre.
+fn solids() -> Vec<(&'static str, Shape)> {
+    let points: Vec<Vec3> = (0..16)
+        .map(|i| {
+            let t = f64::from(i);
+            let part = |x: f64| (t * x).rem_euclid(1.0) - 0.5;
+            Vec3::new(part(1.7), part(0.37), part(0.61)).normalized_or(Vec3::X) * 0.5
+        })
+        .collect();
+    vec![
+        ("sphere", Sphere::new(0.5).expect("a ball").into()),
+        ("box", Cuboid::new(Vec3::splat(0.9)).expect("a box").into()),
+        ("capsule", Capsule::new(0.3, 0.5).expect("a capsule").into()),
+        ("cylinder", Cylinder::new(0.4, 0.8).expect("a cylinder").into()),
+        ("convex", Convex::from_points(&points).expect("a hull").into()),
+        ("ellipsoid", Ellipsoid::new(Vec3::new(0.4, 0.5, 0.6)).expect("an ellipsoid").into()),
+        ("cone", Cone::new(0.5, 0.9).expect("a cone").into()),
+    ]
+}
+
+/// A bumpy mesh of triangles of about half a metre.
+fn terrain() -> TriMesh {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    let n = 41u32;
+    let mut dice = Dice(OdeRandom::new(9));
+    for i in 0..n {
+        for j in 0..n {
+            vertices.push(Vec3::new(
+                0.5 * f64::from(i) - 10.0,
+                0.5 * f64::from(j) - 10.0,
+                0.1 * dice.number(),
+            ));
+            if i + 1 < n && j + 1 < n {
+                let k = i * n + j;
+                triangles.extend([[k, k + n, k + n + 1], [k, k + n + 1, k + 1]]);
+            }
+        }
+    }
+    TriMesh::new(vertices, triangles).expect("a mesh")
+}
+
+/// Nanoseconds of a search for bodies that touch, are near, or lie on terrain.
+fn kinds(reps: usize) {
+    let list = solids();
+    let mesh = Shape::from(terrain());
+    let mut work = Workspace::default();
+    let mut time = |a: &Shape, b: &Shape, places: &[(Frame, Frame)]| {
+        let (mut out, mut found, mut points) = (Vec::with_capacity(64), 0, 0);
+        let t = least(reps, || {
+            (found, points) = (0, 0);
+            for (fa, fb) in places {
+                out.clear();
+                manifolds((a, fa), (b, fb), MARGIN, &mut work, &mut out);
+                found += usize::from(!out.is_empty());
+                points += out.iter().map(|m| m.points().len()).sum::<usize>();
+            }
+        });
+        let n = places.len() as f64;
+        (1e9 * t / n, 100 * found / places.len(), points as f64 / n)
+    };
+    let again = |a: &Shape, b: &Shape, places: &[(Frame, Frame)]| {
+        let mut known = vec![(Axis::default(), Manifold::default()); places.len()];
+        let t = least(reps, || {
+            for ((fa, fb), (axis, m)) in places.iter().zip(&mut known) {
+                convex_manifold((a, fa), (b, fb), MARGIN, axis, m);
+            }
+        });
+        1e9 * t / places.len() as f64
+    };
+    for (i, (name, a)) in list.iter().enumerate() {
+        for (other, b) in &list[i..] {
+            let mut dice = Dice(OdeRandom::new(4));
+            let mut places = |gap: f64| -> Vec<(Frame, Frame)> {
+                (0..300)
+                    .map(|_| {
+                        let (ta, tb) = (dice.turn(), dice.turn());
+                        let mut at = Pose::new(dice.vector().normalized_or(Vec3::X) * 3.0, ta);
+                        let fixed = Pose::new(Vec3::ZERO, tb);
+                        if let Some(d) = narrow::distance((a, &at), (b, &fixed)) {
+                            at.position -= d.normal * (d.distance - gap);
+                        }
+                        (Frame::from(&at), Frame::from(&fixed))
+                    })
+                    .collect()
+            };
+            let (touch, near) = (places(-0.01), places(0.1));
+            let (t, n) = (time(a, b, &touch), time(a, b, &near));
+            println!(
+                "{name:>10} {other:<10} touching {:7.0}, again {:7.0} ns ({:3} % {:.1} points)   near {:7.0}, again {:7.0} ns",
+                t.0,
+                again(a, b, &touch),
+                t.1,
+                t.2,
+                n.0,
+                again(a, b, &near)
+            );
+        }
+        let mut dice = Dice(OdeRandom::new(4));
+        let mut over = |height: f64| -> Vec<(Frame, Frame)> {
+            (0..300)
+                .map(|_| {
+                    let mut at =
+                        Pose::new(Vec3::new(8.0 * dice.number(), 8.0 * dice.number(), 3.0), dice.turn());
+                    if let Some(d) = narrow::distance((a, &at), (&mesh, &Pose::IDENTITY)) {
+                        at.position -= Vec3::Z * (d.distance - height);
+                    }
+                    (Frame::from(&at), Frame::IDENTITY)
+                })
+                .collect()
+        };
+        let (touch, near) = (over(-0.01), over(0.1));
+        let (t, n) = (time(a, &mesh, &touch), time(a, &mesh, &near));
+        println!(
+            "{name:>10} {:<10} touching {:7.0} ns ({:3} % {:.1} points)   near {:7.0} ns",
+            "terrain", t.0, t.1, t.2, n.0
+        );
+    }
+}
+
 fn main() {
     let args: Vec<String> = std::env::args().collect();
     let value = |name: &str| args.iter().position(|a| a == name).and_then(|i| args.get(i + 1));
@@ -190,6 +312,9 @@ fn main() {
             let turn = Quat::from_axis_angle(Vec3::Z, 0.02 * d.number());
             (Pose::new(Vec3::new(d.number(), d.number(), 1.1), turn), up(0.0))
         });
+    }
+    if "kinds".contains(only.as_str()) {
+        kinds(reps / 4 + 2);
     }
     if "pile".contains(only.as_str()) {
         for (name, shift) in [

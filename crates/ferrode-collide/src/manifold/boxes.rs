@@ -116,7 +116,7 @@ pub(super) fn boxes(
             pair.r[i][j] = ma[0][i] * mb[0][j] + ma[1][i] * mb[1][j] + ma[2][i] * mb[2][j];
         }
     }
-    let last = usize::from(axis.0.wrapping_sub(1));
+    let last = usize::from(axis.number.wrapping_sub(1));
     if last < 15 {
         // Mostly what separated them still does.
         let gap = pair.gap(last);
@@ -128,7 +128,7 @@ pub(super) fn boxes(
 }
 
 fn search(pair: &Pair, fa: &Frame, fb: &Frame, margin: f32, axis: &mut Axis, out: &mut Manifold) -> Answer {
-    let last = usize::from(axis.0.wrapping_sub(1));
+    let last = usize::from(axis.number.wrapping_sub(1));
     let least = |h: &[f32; 3]| {
         let m = if h[0] < h[1] { h[0] } else { h[1] };
         if m < h[2] { m } else { h[2] }
@@ -140,7 +140,7 @@ fn search(pair: &Pair, fa: &Frame, fb: &Frame, margin: f32, axis: &mut Axis, out
     for k in 0..6 {
         let gap = if k < 3 { pair.face_a(k) } else { pair.face_b(k - 3) };
         if gap > margin {
-            *axis = Axis(k as u8 + 1);
+            axis.number = k as u8 + 1;
             return Answer::Apart(gap - margin);
         }
         let lead = if k == last {
@@ -170,7 +170,7 @@ fn search(pair: &Pair, fa: &Frame, fb: &Frame, margin: f32, axis: &mut Axis, out
             }
             let gap = gap / square.sqrt();
             if gap > margin {
-                *axis = Axis(k as u8 + 1);
+                axis.number = k as u8 + 1;
                 return Answer::Apart(gap - margin);
             }
             if gap > bar && gap > best.0 - if k == last { prefer } else { 0.0 } {
@@ -178,7 +178,7 @@ fn search(pair: &Pair, fa: &Frame, fb: &Frame, margin: f32, axis: &mut Axis, out
             }
         }
     }
-    *axis = Axis(best.1 as u8 + 1);
+    axis.number = best.1 as u8 + 1;
     match best.1 {
         k @ 0..3 => face_contact::<true>(pair, k, best.0, margin, fa, fb, out),
         k @ 3..6 => face_contact::<false>(pair, k - 3, best.0, margin, fa, fb, out),

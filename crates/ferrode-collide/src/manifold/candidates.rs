@@ -1,6 +1,6 @@
 //! Points of many triangles, gathered and grouped by normal.
 
-use super::patch::{MOST, Patch, Spot};
+use super::patch::{Patch, Spot};
 use crate::GeomContact;
 use ferrode_math::Vec3;
 
@@ -51,22 +51,9 @@ pub(super) fn group(list: &mut [Candidate], near: f64, patch: &mut Patch, mut fo
             let mut spot = c.spot;
             // Its depth along the one normal.
             spot.depth = normal.dot(spot.b - spot.a);
-            if patch.spots().len() == MOST {
-                thin(patch);
-            }
             patch.push(spot);
         }
         found(patch);
         rest = others;
-    }
-}
-
-/// Makes room: of a full patch the four that would be chosen stay.
-fn thin(patch: &mut Patch) {
-    let (chosen, count) = patch.choose();
-    let kept = chosen.map(|i| patch.spots()[i]);
-    patch.clear();
-    for spot in &kept[..count] {
-        patch.push(*spot);
     }
 }

@@ -1,7 +1,7 @@
 //! Two convex bodies: how they touch by GJK and EPA, then all points by clipping the features that face each other.
 
-use super::Touching;
 use super::patch::{Patch, Spot};
+use super::{Axis, Touching};
 use crate::narrow::convex::{Touch, touch_within};
 use crate::narrow::manifold::Feature;
 use crate::narrow::support::{Body, Core};
@@ -21,11 +21,11 @@ const SIDE: u8 = 16;
 
 /// The manifold of two convex shapes of finite size, in the first one's coordinates.
 pub(super) fn pair(
-    sa: &Shape,
-    fa: &Frame,
-    sb: &Shape,
-    fb: &Frame,
+    (sa, fa): (&Shape, &Frame),
+    (sb, fb): (&Shape, &Frame),
     margin: f64,
+    guess: Option<Vec3>,
+    axis: &mut Axis,
     patch: &mut Patch,
 ) -> Touching {
     let local = Frame::new(fa.point_to_local(fb.position), fa.rotation.transpose() * fb.rotation);
@@ -45,8 +45,9 @@ pub(super) fn pair(
     else {
         return Touching::Apart(f64::INFINITY);
     };
-    match touch_within(&a, &b, margin) {
+    match touch_within(&a, &b, margin, guess) {
         Ok(touch) => {
+            axis.set_direction(touch.normal);
             add_points(&a, &b, &touch, margin, patch);
             Touching::Yes
         }

@@ -246,7 +246,23 @@ fn back(m: &Mat3, v: Vec3f) -> Vec3f {
 
 /// What a search remembers of a pair: the axis that separated the shapes, or along which they overlapped least.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Axis(u8);
+pub struct Axis {
+    /// Of two boxes: the number of the axis, from 1.
+    number: u8,
+    /// Of other shapes: the direction from B to A, in the first shape's coordinates, in 127ths; zero if not known.
+    direction: [i8; 3],
+}
+
+impl Axis {
+    fn direction(&self) -> Option<Vec3> {
+        (self.direction != [0; 3]).then(|| Vec3::from_array(self.direction.map(f64::from)))
+    }
+
+    fn set_direction(&mut self, d: Vec3) {
+        let d = d.normalized_or(Vec3::ZERO) * 127.0;
+        self.direction = d.to_array().map(|x| x as i8);
+    }
+}
 
 /// Whether a pair can have several manifolds: one of the shapes is not convex, or not known to be.
 pub fn is_concave(a: &Shape, b: &Shape) -> bool {
@@ -294,7 +310,11 @@ pub fn convex_manifold(
     let mut patch = Patch::new();
     let answer = match b.0 {
         Shape::Plane(plane) => plane::body_plane(a.0, a.1, plane, margin, &mut patch),
-        _ => convex::pair(a.0, a.1, b.0, b.1, margin, &mut patch),
+        _ => {
+            let guess =
+                if out.count > 0 { Some(a.1.vector_to_local(double(out.normal))) } else { axis.direction() };
+            convex::pair(a, b, margin, guess, axis, &mut patch)
+        }
     };
     if answer == Touching::Yes {
         patch.write(out);

@@ -4,8 +4,8 @@ use super::{FAR, MANIFOLD_POINTS, Manifold, ManifoldPoint, single};
 use crate::Frame;
 use ferrode_math::Vec3;
 
-/// Most points of a patch.
-pub(super) const MOST: usize = 32;
+/// Most points of a patch; then the best four stay, and there is room again.
+const MOST: usize = 16;
 /// Depths that differ by less, in parts of the patch's size, are one: at rest rounding must not choose.
 const SAME_DEPTH: f64 = 1e-5;
 /// How much better a new point must be than one that was there a step before.
@@ -57,32 +57,22 @@ impl Patch {
         self.count = 0;
     }
 
-    /// Adds a point; in place of the shallowest if there is no room.
+    /// Adds a point.
+    #[inline]
     pub fn push(&mut self, spot: Spot) {
-        if self.count < MOST {
-            self.spots[self.count] = spot;
-            self.count += 1;
-            return;
+        if self.count == MOST {
+            let (chosen, count) = choose(self.spots(), self.normal, |_| false);
+            let kept = chosen.map(|i| self.spots[i]);
+            self.spots[..count].copy_from_slice(&kept[..count]);
+            self.count = count;
         }
-        let mut least = 0;
-        for (i, s) in self.spots.iter().enumerate() {
-            if s.depth < self.spots[least].depth {
-                least = i;
-            }
-        }
-        if spot.depth > self.spots[least].depth {
-            self.spots[least] = spot;
-        }
+        self.spots[self.count] = spot;
+        self.count += 1;
     }
 
     /// The greatest depth so far.
     pub fn depth(&self) -> f64 {
         self.spots().iter().fold(f64::NEG_INFINITY, |d, s| d.max(s.depth))
-    }
-
-    /// The points that [`write`](Self::write) would keep, of no former ones.
-    pub fn choose(&self) -> ([usize; MANIFOLD_POINTS], usize) {
-        choose(self.spots(), self.normal, |_| false)
     }
 
     /// Overwrites `out`, whose points hand on their impulses.
@@ -127,12 +117,16 @@ impl Patch {
 
 /// The deepest point, the one furthest from it, and the two that widen the polygon most, on either side. Of points that
 /// are nearly as good those that were there before stay.
+#[inline(never)]
 fn choose(
     spots: &[Spot],
     normal: Vec3,
     was_there: impl Fn(u32) -> bool,
 ) -> ([usize; MANIFOLD_POINTS], usize) {
     let mut chosen = [0; MANIFOLD_POINTS];
+    if spots.len() == 1 {
+        return (chosen, 1);
+    }
     let mut known = [1.0; MOST];
     let mut deepest = f64::NEG_INFINITY;
     let (mut low, mut high) = (spots[0].a, spots[0].a);
@@ -145,15 +139,9 @@ fn choose(
         high = high.max(s.a);
     }
     let size = (high - low).abs_max();
-    let best = |measure: &dyn Fn(usize) -> f64| {
-        (0..spots.len()).fold((0, f64::NEG_INFINITY), |b, i| {
-            let m = measure(i);
-            if m > b.1 { (i, m) } else { b }
-        })
-    };
     // A known one among equals.
     let as_deep = |i: usize| spots[i].depth >= deepest - SAME_DEPTH * size;
-    let first = best(&|i| if as_deep(i) { known[i] } else { f64::NEG_INFINITY }).0;
+    let first = best(spots.len(), |i| if as_deep(i) { known[i] } else { f64::NEG_INFINITY }).0;
     chosen[0] = first;
     if spots.len() <= MANIFOLD_POINTS {
         for (i, slot) in chosen.iter_mut().enumerate() {
@@ -163,18 +151,31 @@ fn choose(
         return (chosen, spots.len());
     }
     let at = |i: usize| spots[i].a;
-    let second = best(&|i| (at(i) - at(first)).length_squared() * known[i]).0;
+    let second = best(spots.len(), |i| (at(i) - at(first)).length_squared() * known[i]).0;
     chosen[1] = second;
     let along = at(second) - at(first);
     let area = |i: usize| along.cross(at(i) - at(first)).dot(normal);
     let enough = 1e-6 * along.length_squared();
     let mut count = 2;
     for side in [1.0, -1.0] {
-        let (i, size) = best(&|i| side * area(i) * known[i]);
+        let (i, size) = best(spots.len(), |i| side * area(i) * known[i]);
         if size > enough && !chosen[..count].contains(&i) {
             chosen[count] = i;
             count += 1;
         }
     }
     (chosen, count)
+}
+
+/// The number below `count` with the greatest measure, and that.
+#[inline(always)]
+fn best(count: usize, measure: impl Fn(usize) -> f64) -> (usize, f64) {
+    let mut best = (0, f64::NEG_INFINITY);
+    for i in 0..count {
+        let m = measure(i);
+        if m > best.1 {
+            best = (i, m);
+        }
+    }
+    best
 }

@@ -7,14 +7,17 @@ use super::{Manifold, Vec3f};
 use crate::narrow::collide_frames;
 use crate::narrow::convex::{Touch, touch_within};
 use crate::narrow::heightfield_shape::Zone;
-use crate::narrow::support::Body;
+use crate::narrow::support::{Body, Core};
 use crate::narrow::triangle::{Facet, SAME, allowed, at_inner_edge, bounds, nearer_elsewhere};
 use crate::shape::Neighbour;
 use crate::{CollideOptions, Frame, Shape};
-use ferrode_math::Vec3;
+use ferrode_math::{Aabb, Vec3};
 
 /// Points of a body nearer to each other than this part of its size are one.
 const ONE_PLACE: f64 = 1e-4;
+
+/// How deep, in parts of its size, a body over a triangle may be without a look at the ways out past the edges.
+const SHALLOW: f64 = 0.05;
 
 /// The manifolds of a pair of which one is not convex.
 pub(super) fn manifolds(
@@ -55,12 +58,37 @@ fn body_surface(
     work.list.clear();
     let mut patch = Patch::new();
     match surface {
-        Shape::TriMesh(mesh) => mesh.tree().query(&around, |i| {
-            if let Some(facet) = mesh.facet(i) {
-                body_facet(&body, middle, &facet, i, margin, &mut patch, &mut work.list);
-            }
-        }),
+        Shape::TriMesh(mesh) => {
+            let bears = |place: Vec3, n: Vec3| {
+                let mut bears = true;
+                let here = Aabb::new(place, place).expanded(NEAR * place.abs_max().max(1.0));
+                mesh.tree().query(&here, |i| {
+                    if let Some(facet) = mesh.facet(i) {
+                        bears &= below(&facet, place, n);
+                    }
+                });
+                bears
+            };
+            let over = Over { body: &body, middle, margin, bears };
+            mesh.tree().query(&around, |i| {
+                if let Some(facet) = mesh.facet(i) {
+                    body_facet(&over, &facet, i, &mut patch, &mut work.list);
+                }
+            });
+        }
         Shape::Heightfield(field) => {
+            let bears = |place: Vec3, n: Vec3| {
+                let here = Aabb::new(place, place).expanded(NEAR * place.abs_max().max(1.0));
+                let Some(zone) = Zone::under(field, &here) else { return true };
+                let cells = |[low, high]: [i64; 2]| low..high;
+                cells(zone.x).all(|x| {
+                    cells(zone.z).all(|z| {
+                        let halves = [false, true].map(|upper| field.facet(x, z, upper));
+                        halves.iter().flatten().all(|facet| below(facet, place, n))
+                    })
+                })
+            };
+            let over = Over { body: &body, middle, margin, bears };
             if let Some(zone) = Zone::under(field, &around).filter(|zone| around.min.y <= zone.high) {
                 for x in zone.x[0]..zone.x[1] {
                     for z in zone.z[0]..zone.z[1] {
@@ -68,7 +96,7 @@ fn body_surface(
                             if let Some(facet) = field.facet(x, z, upper) {
                                 let number =
                                     (x as u32).wrapping_mul(0x9e37_79b1) ^ (z as u32) << 1 ^ u32::from(upper);
-                                body_facet(&body, middle, &facet, number, margin, &mut patch, &mut work.list);
+                                body_facet(&over, &facet, number, &mut patch, &mut work.list);
                             }
                         }
                     }
@@ -92,45 +120,77 @@ fn body_surface(
     true
 }
 
+/// A body over a surface, in the surface's coordinates.
+struct Over<'a, F: Fn(Vec3, Vec3) -> bool> {
+    body: &'a Body<'a>,
+    middle: Vec3,
+    margin: f64,
+    /// Whether all triangles at a place of the surface are below the plane with a normal there.
+    bears: F,
+}
+
+/// Places nearer to each other than this part of their coordinates are one.
+const NEAR: f64 = 1e-7;
+
+/// Whether a triangle, if it has a place on its edge or corner, lies below the plane with the normal `n` there.
+fn below(facet: &Facet, place: Vec3, n: Vec3) -> bool {
+    let scale = facet.scale();
+    (facet.nearest(place) - place).abs_max() > 1e-6 * scale
+        || facet.corners.iter().all(|&c| n.dot(c - place) <= 1e-5 * scale)
+}
+
 /// Adds the points of a body over one triangle, normals into the body, if the body's middle is before the triangle.
 ///
 /// A body that slides over a surface must not be caught by the edges within it. So a normal at an edge is kept only if
-/// it lies between those of the two triangles there; else the triangle's own normal counts, with the part of the body's
+/// it lies between those of the two triangles there, or if all triangles there are below the plane that it stands on, which
+/// `bears` tells; else the triangle's own normal counts, with the part of the body's
 /// face that is over the triangle.
 fn body_facet(
-    body: &Body<'_>,
-    middle: Vec3,
+    over: &Over<'_, impl Fn(Vec3, Vec3) -> bool>,
     facet: &Facet,
     number: u32,
-    margin: f64,
     patch: &mut Patch,
     list: &mut Vec<Candidate>,
 ) {
+    let &Over { body, middle, margin, .. } = over;
     let n = facet.normal;
-    if facet.height(middle) < 0.0 || facet.height(body.support(-n)) - body.margin > margin {
+    if facet.height(middle) < 0.0 {
         return;
+    }
+    let lowest = body.support(-n) - n * body.margin;
+    let depth = -facet.height(lowest);
+    if depth < -margin {
+        return;
+    }
+    // The ball around the body is easily told to be away; of a ball that is all there is to know.
+    let from = body.center - facet.nearest(body.center);
+    let far = body.reach() + margin;
+    if from.length_squared() > far * far {
+        return;
+    }
+    let mut inside = true;
+    let mut bends = false;
+    for e in 0..3 {
+        let outward = facet.outward(e);
+        // Beside the triangle altogether.
+        let gap = outward.dot(body.support(-outward) - facet.corners[e]) - body.margin;
+        if gap > margin {
+            return;
+        }
+        inside &= outward.dot(lowest - facet.corners[e]) <= 0.0;
+        bends |= facet.neighbours[e] != Neighbour::FlatOrConcave;
     }
     let triangle = Body::triangle(facet.corners);
     patch.clear();
     patch.normal = n;
-    match touch_within(body, &triangle, margin) {
-        // Beyond an edge within the surface the neighbour bears the body.
-        Ok(t) if t.normal.dot(n) > 1.0 - SAME && !at_inner_edge(facet, &t) => {
-            add_points(body, &triangle, &Touch { normal: n, ..t }, margin, patch);
+    if !bends || (inside && depth < SHALLOW * body.reach()) {
+        // Over the triangle, or on a surface that goes on level or rises: only its own normal can be.
+        add_face_points(body, &triangle, n, margin, patch);
+        if patch.spots().is_empty() {
+            add_hidden_point(body, middle, facet, patch);
         }
-        Ok(t) if t.normal.dot(n) <= 1.0 - SAME && allowed(facet, &t) => {
-            add_points(body, &triangle, &t, margin, patch);
-            // Of a body with edges the face that looks at an edge must be one of those allowed, too.
-            if patch.normal.dot(n) < t.normal.dot(n) - SAME
-                && !allowed(facet, &Touch { normal: patch.normal, ..t })
-            {
-                patch.clear();
-                patch.normal = t.normal;
-                patch.push(Spot { a: t.a, b: t.b, depth: t.depth, feature: 3 << 30 });
-            }
-        }
-        Ok(_) => add_face_points(body, &triangle, n, margin, patch),
-        Err(_) => add_hidden_point(body, middle, facet, patch),
+    } else {
+        add_touch_points(over, &triangle, facet, patch);
     }
     let normal = patch.normal;
     for spot in patch.spots() {
@@ -138,6 +198,54 @@ fn body_facet(
             let feature = number.wrapping_mul(0x85eb_ca6b) ^ spot.feature;
             list.push(Candidate { spot: Spot { feature, ..*spot }, normal, parts: (-1, facet.index) });
         }
+    }
+}
+
+/// A ball, its centre before the triangle, and the triangle's nearest point.
+fn ball_touch(body: &Body<'_>, facet: &Facet, margin: f64) -> Option<Touch> {
+    let b = facet.nearest(body.center);
+    let between = body.center - b;
+    let normal = between.normalized_or(facet.normal);
+    let depth = body.margin - between.length();
+    let a = body.center - normal * body.margin;
+    (depth >= -margin).then_some(Touch { normal, depth, a, b })
+}
+
+/// The points of a body at a triangle with an edge or corner that may touch.
+fn add_touch_points(
+    over: &Over<'_, impl Fn(Vec3, Vec3) -> bool>,
+    triangle: &Body<'_>,
+    facet: &Facet,
+    patch: &mut Patch,
+) {
+    let &Over { body, middle, margin, .. } = over;
+    let n = facet.normal;
+    let touch = match body.core {
+        Core::Point => ball_touch(body, facet, margin),
+        _ => touch_within(body, triangle, margin, Some(n)).ok(),
+    };
+    match touch {
+        // Beyond an edge within the surface the neighbour bears the body.
+        Some(t) if t.normal.dot(n) > 1.0 - SAME && !at_inner_edge(facet, &t) => {
+            add_points(body, triangle, &Touch { normal: n, ..t }, margin, patch);
+        }
+        Some(t)
+            if t.normal.dot(n) <= 1.0 - SAME
+                && (allowed(facet, &t) || (t.normal.dot(n) > 0.0 && (over.bears)(t.b, t.normal))) =>
+        {
+            add_points(body, triangle, &t, margin, patch);
+            // Of a body with edges the face that looks at an edge must be one of those allowed, too.
+            if patch.normal.dot(n) < t.normal.dot(n) - SAME
+                && !allowed(facet, &Touch { normal: patch.normal, ..t })
+                && !(over.bears)(t.b, patch.normal)
+            {
+                patch.clear();
+                patch.normal = t.normal;
+                patch.push(Spot { a: t.a, b: t.b, depth: t.depth, feature: 3 << 30 });
+            }
+        }
+        Some(_) => add_face_points(body, triangle, n, margin, patch),
+        None => add_hidden_point(body, middle, facet, patch),
     }
 }
 

@@ -325,3 +325,83 @@ fn a_long_way_from_the_origin() {
     list[0].refresh(&moved, &fm);
     assert!(list[0].points().iter().all(|p| (p.depth - 0.001).abs() < 1e-6), "{list:?}");
 }
+
+/// A sheet of triangles whose corners are at `height` of their numbers.
+fn sheet(n: u32, size: f64, mut height: impl FnMut() -> f64) -> TriMesh {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    let at = |i: u32| (f64::from(i) / f64::from(n - 1) - 0.5) * size;
+    for i in 0..n {
+        for j in 0..n {
+            vertices.push(Vec3::new(at(i), at(j), height()));
+            if i + 1 < n && j + 1 < n {
+                let k = i * n + j;
+                triangles.extend([[k, k + n, k + n + 1], [k, k + n + 1, k + 1]]);
+            }
+        }
+    }
+    TriMesh::new(vertices, triangles).unwrap()
+}
+
+#[test]
+fn nothing_pushes_sideways_on_flat_triangles() {
+    let mesh = Shape::from(sheet(24, 10.0, || 0.0));
+    let field = Shape::from(Heightfield::new(10.0, 10.0, 24, 24, vec![0.0; 576], 1.0).unwrap());
+    let field_frame = Frame::from(&Pose::new(Vec3::ZERO, Heightfield::z_up()));
+    let mut dice = Dice(OdeRandom::new(21));
+    let mut work = Workspace::default();
+    let mut list = Vec::new();
+    for body in &solids() {
+        for _ in 0..200 {
+            let turn = dice.turn();
+            let mut at =
+                Frame::from(&Pose::new(Vec3::new(4.0 * dice.number(), 4.0 * dice.number(), 0.0), turn));
+            // Its lowest point 2 cm below to 1 cm above the sheet.
+            let lowest = body.aabb_in(&at).min.z;
+            let height = 0.015 * dice.number() - 0.005;
+            at.position.z = height - lowest;
+            for (ground, frame) in [(&mesh, &Frame::IDENTITY), (&field, &field_frame)] {
+                list.clear();
+                manifolds((body, &at), (ground, frame), 0.02, &mut work, &mut list);
+                assert_eq!(list.len(), 1, "{body:?} {at:?} {list:#?}");
+                let m = &list[0];
+                assert!((double(m.normal) - Vec3::Z).length() < 1e-5, "{body:?} {m:#?}");
+                assert!((f64::from(m.depth()) + height).abs() < 1e-3, "{body:?} {height} {m:#?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn points_ahead_of_bumpy_ground_are_as_far_as_it_is() {
+    let mut dice = Dice(OdeRandom::new(22));
+    let mesh = Shape::from(sheet(24, 10.0, || 0.12 * dice.number()));
+    let mut dice = Dice(OdeRandom::new(23));
+    let mut work = Workspace::default();
+    let (mut list, mut touched) = (Vec::new(), 0);
+    for (kind, body) in solids().iter().enumerate() {
+        for _ in 0..300 {
+            let place = Vec3::new(4.0 * dice.number(), 4.0 * dice.number(), 1.0);
+            let mut at = Frame::from(&Pose::new(place, dice.turn()));
+            // Down to where it is near.
+            for _ in 0..3 {
+                let above = distance_frames((body, &at), (&mesh, &Frame::IDENTITY)).unwrap().distance;
+                at.position.z -= above - 0.01 - 0.02 * dice.number();
+            }
+            let truth = distance_frames((body, &at), (&mesh, &Frame::IDENTITY)).unwrap();
+            if truth.distance < -0.005 {
+                continue;
+            }
+            list.clear();
+            manifolds((body, &at), (&mesh, &Frame::IDENTITY), 0.03, &mut work, &mut list);
+            let depth = list.iter().map(|m| f64::from(m.depth())).fold(f64::NEG_INFINITY, f64::max);
+            if truth.distance < 0.028 {
+                touched += 1;
+                assert!((depth + truth.distance).abs() < 2e-3, "{kind} {depth} {truth:?} {list:#?}");
+            } else if truth.distance > 0.0301 {
+                // None, or one that is over no triangle but the margin's breadth beside it.
+                assert!(depth < -0.02, "{kind} {depth} {truth:?} {list:#?}");
+            }
+        }
+    }
+    assert!(touched > 1000, "{touched}");
+}

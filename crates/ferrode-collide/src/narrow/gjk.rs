@@ -171,8 +171,17 @@ pub(super) fn nearest_of_triangle(a: Vec3, b: Vec3, c: Vec3) -> ([usize; 3], [f6
 /// The nearest points of two cores, or a simplex about the origin if they overlap. Cores known to be further apart
 /// than `limit` are not looked at closely.
 pub(crate) fn gjk(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
-    let mut d = a.center - b.center;
-    let scale = a.reach() + b.reach() + d.length();
+    gjk_from(a, b, limit, a.center - b.center, EXACT)
+}
+
+/// What is left of the squared distance to gain when the search ends: all but rounding.
+const EXACT: f64 = 1e-13;
+
+/// As [`gjk`], from a direction that may be near the answer, until no more than `rest` of the squared distance is left
+/// to gain.
+pub(crate) fn gjk_from(a: &Body<'_>, b: &Body<'_>, limit: f64, start: Vec3, rest: f64) -> Gap {
+    let mut d = start;
+    let scale = a.reach() + b.reach() + (a.center - b.center).length();
     let touching = 1e-26 * scale * scale;
     if !(d.length_squared() > 0.0) {
         d = Vec3::X;
@@ -199,7 +208,7 @@ pub(crate) fn gjk(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
             furthest = v;
         }
         // No support point is nearer, or it is one we have.
-        if square - along <= 1e-13 * square
+        if square - along <= rest * square
             || part.places[..part.count].iter().any(|&i| vertices[i].w == next.w)
         {
             break;

@@ -52,7 +52,7 @@ impl Facet {
     }
 
     /// A length like the triangle's.
-    fn scale(&self) -> f64 {
+    pub fn scale(&self) -> f64 {
         (self.corners[1] - self.corners[0]).abs_max() + (self.corners[2] - self.corners[0]).abs_max()
     }
 
