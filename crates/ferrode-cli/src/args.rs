@@ -14,6 +14,8 @@ pub enum Task {
     Check(FileArgs),
     /// `ferrode compare`
     Compare(CompareArgs),
+    /// `ferrode demo`
+    Demo(DemoArgs),
 }
 
 /// The file, and how to read it.
@@ -97,6 +99,17 @@ pub struct CompareArgs {
     pub quiet: bool,
 }
 
+/// `ferrode demo`
+#[derive(Clone, Debug, PartialEq)]
+pub struct DemoArgs {
+    /// The demo's name; none to list them.
+    pub name: Option<String>,
+    /// All of them.
+    pub all: bool,
+    /// Without pictures: run it and check its property.
+    pub headless: bool,
+}
+
 /// The steppers by the names they have here.
 pub const STEPPERS: [(&str, Stepper); 2] = [("direct", Stepper::Direct), ("quick", Stepper::Quick)];
 
@@ -118,7 +131,8 @@ Examples:
   ferrode run world.sdf --record out.csv --every 10       places and velocities, each tenth step
   ferrode run world.sdf --json | jq .real_time_factor
   ferrode check world.sdf                                 is the file right, and what is in it?
-  ferrode compare world.sdf                               which stepper suits this world?";
+  ferrode compare world.sdf                               which stepper suits this world?
+  ferrode demo --all --headless                           does all of the gallery do what it should?";
 
 fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
@@ -292,6 +306,23 @@ pub fn command() -> Command {
     let compare = Command::new("compare")
         .about("Run a world with each stepper, and set their times and errors side by side")
         .after_help(EXIT_CODES);
+    let demo = Command::new("demo")
+        .about("Show a scene of the gallery, or list them")
+        .after_help(EXIT_CODES)
+        .arg(Arg::new("name").value_name("NAME").help("The demo to show; without a name they are listed"))
+        .arg(
+            Arg::new("all")
+                .long("all")
+                .action(ArgAction::SetTrue)
+                .conflicts_with("name")
+                .help("All demos, one after the other"),
+        )
+        .arg(
+            Arg::new("headless")
+                .long("headless")
+                .action(ArgAction::SetTrue)
+                .help("Without pictures: run it to its end and check the physical property\nthat it shows"),
+        );
     Command::new("ferrode")
         .about("Rigid-body dynamics from the command line: runs SDF worlds and URDF robots.")
         .version(env!("CARGO_PKG_VERSION"))
@@ -302,6 +333,7 @@ pub fn command() -> Command {
         .subcommand(output_args(setup_args(file_args(run))))
         .subcommand(file_args(check))
         .subcommand(output_args(setup_args(file_args(compare))))
+        .subcommand(demo)
 }
 
 /// Reads a command line, the program's name first.
@@ -322,6 +354,11 @@ where
             length: length_of(m),
             json: m.get_flag("json"),
             quiet: m.get_flag("quiet"),
+        }),
+        Some(("demo", m)) => Task::Demo(DemoArgs {
+            name: m.get_one::<String>("name").cloned(),
+            all: m.get_flag("all"),
+            headless: m.get_flag("headless"),
         }),
         Some(("run", m)) => {
             let stepper = m.get_one::<String>("stepper");
@@ -409,6 +446,7 @@ mod tests {
             "ferrode run a.sdf --every 2",
             "ferrode run a.sdf --stepper slow",
             "ferrode fly a.sdf",
+            "ferrode demo hinge --all",
         ] {
             assert!(parse(line.split_whitespace()).is_err(), "{line}");
         }

@@ -1,9 +1,11 @@
 #![forbid(unsafe_code)]
-//! The `ferrode` command: simulates SDF worlds and URDF robots, checks them, and compares steppers on them.
+//! The `ferrode` command: simulates SDF worlds and URDF robots, checks them, compares steppers on them, and
+//! shows a gallery of scenes.
 
 mod args;
 mod check;
 mod compare;
+mod demo;
 mod exit;
 mod hold;
 mod json;
@@ -14,6 +16,7 @@ mod simulation;
 mod stats;
 mod summary;
 mod version;
+mod viewer;
 
 use exit::{Exit, Failure};
 use std::process::ExitCode;
@@ -31,6 +34,7 @@ fn main() -> ExitCode {
         args::Task::Run(args) => run::run(args),
         args::Task::Check(args) => check::check(args),
         args::Task::Compare(args) => compare::compare(args),
+        args::Task::Demo(args) => demo::demo(args),
     };
     let exit = result.unwrap_or_else(|Failure { exit, message }| {
         if !message.is_empty() {

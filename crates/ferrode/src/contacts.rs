@@ -140,6 +140,10 @@ impl World {
         found: &GeomContact,
         mut surface: Surface,
     ) -> Result<(), Error> {
+        if a.body.is_none() {
+            // A joint from the static world to a body counts the body as its first.
+            (surface.motion1, surface.motion2) = (-surface.motion1, -surface.motion2);
+        }
         let mut contact = Contact::at(found.point, surface);
         if let Some(direction) = self.friction_direction(a, b, found.point.normal)? {
             surface.mode |= SurfaceMode::FDIR1;

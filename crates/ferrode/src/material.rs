@@ -31,7 +31,8 @@ pub struct Material {
     pub max_correcting_velocity: Option<f64>,
     /// Depth in metres that contacts are left at; of two materials the larger one counts, `None` stands for the world's.
     pub surface_layer: Option<f64>,
-    /// Velocity of the surface along the first and second friction direction, in m/s: a conveyor belt.
+    /// Velocity of the surface, relative to its body, along the first and second friction direction, in m/s: a conveyor
+    /// belt carries what lies on it that way.
     pub motion: [f64; 2],
 }
 
@@ -145,7 +146,7 @@ impl Combine {
 
 /// How two materials become the surface of a contact.
 ///
-/// Slips and surface velocities add; softnesses act like springs in series.
+/// Slips add, surface velocities subtract; softnesses act like springs in series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CombineRules {
     /// Friction coefficients; the smaller one by default, as Gazebo does.
@@ -191,7 +192,8 @@ impl CombineRules {
             surface.mode |= SurfaceMode::SLIP2;
             surface.slip2 = slip[1];
         }
-        let motion = [a.motion[0] + b.motion[0], a.motion[1] + b.motion[1]];
+        // A contact's motion is the velocity that the first body strives for relative to the second.
+        let motion = [b.motion[0] - a.motion[0], b.motion[1] - a.motion[1]];
         if motion != [0.0; 2] {
             surface = surface.with_motion(motion[0], motion[1]);
         }

@@ -190,3 +190,38 @@ fn off_centre_shapes_shift_the_body_not_the_shapes() -> Result<(), Error> {
     assert!((inertia.rows[1][1] - 1.0 / 12.0 * (1.0 + 0.01)).abs() < 1e-12);
     Ok(())
 }
+
+#[test]
+fn a_belt_carries_what_lies_on_it_whichever_geom_is_found_first() -> Result<(), Error> {
+    // Made before and after its load, fixed and on a kinematic body.
+    for (belt_first, on_body) in [(true, false), (false, false), (true, true), (false, true)] {
+        let mut world = World::new();
+        world.set_gravity(Vec3::new(0.0, 0.0, -9.81))?;
+        let make_belt = |world: &mut World| -> Result<(), Error> {
+            let shape = Cuboid::new(Vec3::new(20.0, 1.0, 0.2))?;
+            let geom = if on_body {
+                let body = world.add_body(BodyBuilder::new().with_shape(shape, 1.0).kinematic())?;
+                world.body_geoms(body)?[0]
+            } else {
+                world.add_static(shape, Pose::IDENTITY)?
+            };
+            let rubber =
+                Material { friction_direction: Some(Vec3::X), motion: [1.5, 0.0], ..Material::default() };
+            world.set_material(geom, rubber)
+        };
+        if belt_first {
+            make_belt(&mut world)?;
+        }
+        let load = BodyBuilder::new().at(Vec3::new(0.0, 0.0, 0.35));
+        let load = world.add_body(load.with_shape(Cuboid::new(Vec3::splat(0.5))?, 100.0))?;
+        if !belt_first {
+            make_belt(&mut world)?;
+        }
+        for _ in 0..200 {
+            world.step(0.01)?;
+        }
+        let v = world.body(load)?.linear_velocity();
+        assert!((v.x - 1.5).abs() < 1e-3 && v.y.abs() < 1e-3, "{belt_first} {on_body}: {v:?}");
+    }
+    Ok(())
+}

@@ -1,0 +1,38 @@
+//! Convex polyhedra: the five regular solids fall into a heap.
+
+use super::prelude::*;
+use crate::solids;
+
+pub(super) const DEMO: Demo = Demo {
+    name: "convex",
+    about: "Plato's solids fall into a heap",
+    property: "all lie on the ground at rest, none sunk by more than 5 mm",
+    seconds: 6.0,
+    picture_at: 6.0,
+    camera: Camera::new([4.0, -5.0, 3.2], [0.0, 0.0, 0.5]),
+    build,
+};
+
+fn build() -> Result<Play, Failure> {
+    let mut world = ground(Stepper::Quick)?;
+    let_sleep(&mut world)?;
+    for layer in 0..4 {
+        for (i, points) in solids::platonic().iter().enumerate() {
+            let angle = i as f64 * 72.0 + layer as f64 * 36.0;
+            let out = turn(Vec3::Z, angle).rotate(at(0.75, 0.0, 0.0));
+            let shape = hull(&points.iter().map(|p| *p * 0.35).collect::<Vec<_>>())?;
+            let tilt = turn(at(1.0, 0.5, 0.2), 40.0 * layer as f64 + 20.0 * i as f64);
+            let builder = BodyBuilder::new()
+                .at(out + at(0.0, 0.0, 0.8 + 0.9 * layer as f64))
+                .rotated(tilt)
+                .with_shape(shape, 800.0);
+            world.add_body(builder)?;
+        }
+    }
+    Stage::new(world, 0.005, ()).check(|(), world| {
+        Ok(Findings::new()
+            .at_most("deepest contact (m)", deepest(world), 5e-3)
+            .at_most("fastest (m/s)", fastest(world), 0.05)
+            .at_least("lowest centre (m)", lowest(world), 0.1))
+    })
+}
