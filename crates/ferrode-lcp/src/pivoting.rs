@@ -30,7 +30,7 @@ use crate::problem::check_row;
 use crate::residual::row_residual;
 use crate::sparse::kernels::Six;
 use crate::sparse::symbolic::{Symbolic, SymbolicCache};
-use crate::sparse::system::System;
+use crate::sparse::system::{Pass, System};
 use crate::sparse::{NO_SPARSE_BODY, RowBlock, ScaledRow};
 use line::{Bounds, Rows, state_of};
 
@@ -119,6 +119,8 @@ impl PivotingReport {
 const CERTIFIED: f64 = 1e-10;
 /// A row counts as wrong when it is off by more than this part of `1 + max |x|`.
 const WRONG: f64 = 1e-14;
+/// The same before refinement.
+const CLEARLY_WRONG: f64 = 1e-6;
 /// Rounding of a slack, in parts of its right-hand side.
 const NOISE: f64 = 4e-15;
 /// So many times the number of wrong rows may fail to fall.
@@ -184,7 +186,16 @@ pub fn solve_pivoting(
     let mut cache = core::mem::take(shapes);
     let report = {
         let shape = cache.get(options.topology, problem.bodies, problem.blocks, problem.lo, problem.hi);
-        Solve { p: problem, options, shape, work: workspace, report: PivotingReport::default() }.run()
+        Solve {
+            p: problem,
+            options,
+            shape,
+            work: workspace,
+            report: PivotingReport::default(),
+            largest: 0.0,
+            pass: Pass::Own,
+        }
+        .run()
     };
     workspace.shapes = cache;
     Ok(report)
@@ -231,6 +242,10 @@ struct Solve<'a, 'b> {
     shape: &'a Symbolic,
     work: &'a mut PivotingWorkspace,
     report: PivotingReport,
+    /// The largest force of the last solution.
+    largest: f64,
+    /// Whether the problem is solved as it is or with the CFM that rows were raised to.
+    pass: Pass,
 }
 
 impl Solve<'_, '_> {
@@ -285,8 +300,9 @@ impl Solve<'_, '_> {
     fn phase(&mut self, which: usize) {
         let m = self.p.jacobian.len();
         self.guess(which);
+        self.pass = Pass::Own;
         let mut solved = self.pivot();
-        if solved && self.work.system.raised {
+        if solved && self.pass == Pass::Raised && self.work.system.raised && !self.solve_as_given() {
             solved = self.proximal_steps();
         }
         self.clamp();
@@ -316,13 +332,18 @@ impl Solve<'_, '_> {
         let (mut best, mut chances, mut newton) = (usize::MAX, CHANCES, false);
         let (mut best_value, mut advised) = (f64::INFINITY, false);
         for _ in 0..self.options.max_factorisations {
-            let largest = self.solve_set();
-            if !largest.is_finite() {
+            self.solve_set();
+            if !self.largest.is_finite() {
                 return false;
             }
-            let wrong = self.propose(largest);
+            let mut wrong = self.propose(CLEARLY_WRONG);
             if wrong == 0 {
-                return self.canonical(largest);
+                self.refine_set();
+                wrong = self.propose(WRONG);
+            }
+            if wrong == 0 {
+                self.canonical();
+                return true;
             }
             if !newton {
                 // Remember the point with the least F, in case Newton's method takes over.
@@ -337,6 +358,7 @@ impl Solve<'_, '_> {
                     chances -= 1;
                 } else if !advised {
                     advised = true;
+                    self.pass = Pass::Raised;
                     (best, chances) = (usize::MAX, CHANCES);
                     self.take_advice();
                     best_value = self.rows().value(&self.work.system.y, &self.work.system.jy);
@@ -406,8 +428,8 @@ impl Solve<'_, '_> {
         rows(&self.work.lo, &self.work.hi, &self.work.system)
     }
 
-    /// Factors at the present states and solves, `J y` included. Returns the largest force.
-    fn solve_set(&mut self) -> f64 {
+    /// Factors at the present states and solves, `J y` included, without refinement.
+    fn solve_set(&mut self) {
         let Self { p, shape, work, report, .. } = self;
         let PivotingWorkspace { system, state, factored, lo, hi, .. } = &mut **work;
         let mut changed = factored.len() != state.len();
@@ -432,16 +454,24 @@ impl Solve<'_, '_> {
                 RowState::Upper => system.lambda[row] = hi[row],
             }
         }
-        let largest = system.solve(p.blocks, p.jacobian, state, shape);
+        self.largest = system.solve(p.blocks, p.jacobian, state, shape);
         system.product(p.blocks, p.jacobian);
-        largest
     }
 
-    /// Finds the rows whose state is wrong, and proposes better ones. Returns their number.
-    fn propose(&mut self, largest: f64) -> usize {
+    /// Refines the solution of the present states.
+    fn refine_set(&mut self) {
+        let Self { p, shape, work, pass, .. } = self;
+        work.system.refine_roughly(p.blocks, p.jacobian, &work.state, shape, *pass);
+        work.system.product(p.blocks, p.jacobian);
+    }
+
+    /// Finds the rows whose state is wrong by more than so many parts of the largest force, and proposes better ones. Returns their number.
+    fn propose(&mut self, tolerance: f64) -> usize {
+        let tolerance = tolerance * (1.0 + self.largest);
         let PivotingWorkspace { system: s, state, proposed, lo, hi, .. } = &mut *self.work;
         proposed.clone_from(state);
-        let tolerance = WRONG * (1.0 + largest);
+        let sigma = if self.pass == Pass::Own { &s.sigma } else { &s.used_sigma };
+        let slack = |row: usize| s.jy[row] + sigma[row] * s.lambda[row] - s.rhs[row];
         let mut wrong = 0;
         for row in 0..state.len() {
             if lo[row] == hi[row] {
@@ -451,8 +481,8 @@ impl Solve<'_, '_> {
             let better = match state[row] {
                 RowState::Free if s.lambda[row] < lo[row] - tolerance => RowState::Lower,
                 RowState::Free if s.lambda[row] > hi[row] + tolerance => RowState::Upper,
-                RowState::Lower if slack(s, row) < -least => RowState::Free,
-                RowState::Upper if slack(s, row) > least => RowState::Free,
+                RowState::Lower if slack(row) < -least => RowState::Free,
+                RowState::Upper if slack(row) > least => RowState::Free,
                 state => state,
             };
             if better != state[row] {
@@ -461,6 +491,19 @@ impl Solve<'_, '_> {
             }
         }
         wrong
+    }
+
+    /// Solves at the present states with the rows' own CFM; whether the states are right for it.
+    fn solve_as_given(&mut self) -> bool {
+        self.pass = Pass::Own;
+        self.solve_set();
+        self.refine_set();
+        if self.propose(WRONG) > 0 {
+            self.pass = Pass::Raised;
+            return false;
+        }
+        self.canonical();
+        true
     }
 
     /// Repeats the solve with the right-hand side that makes good the CFM that rows were given beyond their own.
@@ -550,12 +593,6 @@ impl Solve<'_, '_> {
             self.measure();
         }
     }
-}
-
-/// `w` of a row whose force is given.
-#[inline(always)]
-fn slack(s: &System, row: usize) -> f64 {
-    s.jy[row] + s.used_sigma[row] * s.lambda[row] - s.rhs[row]
 }
 
 fn rows<'a>(lo: &'a [f64], hi: &'a [f64], s: &'a System) -> Rows<'a> {

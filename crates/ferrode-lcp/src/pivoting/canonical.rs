@@ -3,8 +3,7 @@
 //! A degenerate row is at its bound with no slack: free or not, the forces are the same, but not to the last bit. Such rows are put at
 //! their bound. Where several share a load, not all can be; those that must be free are let go again.
 
-use super::{RowState, Solve};
-use crate::pivoting::PivotingWorkspace;
+use super::{PivotingWorkspace, RowState, Solve, WRONG};
 
 /// A row counts as degenerate when it is this close to changing its state.
 const DEGENERATE: f64 = 1e-9;
@@ -13,25 +12,25 @@ const MOST_ROUNDS: u32 = 6;
 
 impl Solve<'_, '_> {
     /// Puts degenerate rows at their bound and solves once more, so that the way to the answer leaves no trace.
-    pub(super) fn canonical(&mut self, largest: f64) -> bool {
+    pub(super) fn canonical(&mut self) {
         self.work.accepted.clone_from(&self.work.state);
         self.work.needed.clear();
         self.work.needed.resize(self.work.state.len(), false);
-        self.put_at_bounds(largest).unwrap_or_else(|| {
+        if !self.put_at_bounds() {
             // They would not go there.
             self.work.state.clone_from(&self.work.accepted);
-            self.solve_set()
-        });
-        let Self { p, shape, work, .. } = self;
-        work.system.polish(p.blocks, p.jacobian, &work.state, shape);
-        true
+            self.solve_set();
+            self.refine_set();
+        }
+        let Self { p, shape, work, pass, .. } = self;
+        work.system.polish(p.blocks, p.jacobian, &work.state, shape, *pass);
     }
 
-    /// Puts rows at bounds until no free row is left there but those that must be free. Returns the largest force.
-    fn put_at_bounds(&mut self, mut largest: f64) -> Option<f64> {
+    /// Puts rows at bounds until no free row is left there but those that must be free. Whether it came to an end.
+    fn put_at_bounds(&mut self) -> bool {
         for _ in 0..MOST_ROUNDS {
             let PivotingWorkspace { system, state, needed, lo, hi, .. } = &mut *self.work;
-            let close = DEGENERATE * (1.0 + largest);
+            let close = DEGENERATE * (1.0 + self.largest);
             let mut degenerate = false;
             for row in 0..state.len() {
                 if state[row] != RowState::Free || needed[row] {
@@ -44,15 +43,16 @@ impl Solve<'_, '_> {
                 }
             }
             if !degenerate {
-                return Some(largest);
+                return true;
             }
             let mut wrong = usize::MAX;
             for _ in 0..MOST_ROUNDS {
-                largest = self.solve_set();
-                if !largest.is_finite() {
-                    return None;
+                self.solve_set();
+                if !self.largest.is_finite() {
+                    return false;
                 }
-                wrong = self.propose(largest);
+                self.refine_set();
+                wrong = self.propose(WRONG);
                 if wrong == 0 {
                     break;
                 }
@@ -63,9 +63,9 @@ impl Solve<'_, '_> {
                 core::mem::swap(state, proposed);
             }
             if wrong > 0 {
-                return None;
+                return false;
             }
         }
-        None
+        false
     }
 }

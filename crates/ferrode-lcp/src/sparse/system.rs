@@ -28,6 +28,17 @@ const ROUGH: f64 = 1e-12;
 const FINE: f64 = 1e-15;
 const MOST_CORRECTIONS: usize = 8;
 
+/// Which residuals a correction is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pass {
+    /// Those of `y = 0`.
+    First,
+    /// Those with the CFM that the factor is made with.
+    Raised,
+    /// Those with the rows' own CFM. Corrections by a factor with more of it are proximal steps.
+    Own,
+}
+
 /// A problem's rows with what is computed for each, and the unknowns.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct System {
@@ -319,7 +330,7 @@ impl System {
                 *lambda = 0.0;
             }
         }
-        (self.change, self.rate) = (self.correct(blocks, jacobian, state, shape, true), 1.0);
+        (self.change, self.rate) = (self.correct(blocks, jacobian, state, shape, Pass::First), 1.0);
         self.apply();
         let (mut largest, mut strongest): (f64, f64) = (0.0, 0.0);
         for (lambda, diagonal) in self.lambda.iter().zip(&self.diagonal) {
@@ -330,8 +341,19 @@ impl System {
             strongest = if square > strongest { square } else { strongest };
         }
         self.scale = strongest.sqrt();
-        self.refine(blocks, jacobian, state, shape, ROUGH * self.scale);
         largest
+    }
+
+    /// Refines the last solution until states can be told from it.
+    pub fn refine_roughly(
+        &mut self,
+        blocks: &[RowBlock],
+        jacobian: &[ScaledRow],
+        state: &[RowState],
+        shape: &Symbolic,
+        pass: Pass,
+    ) {
+        self.refine(blocks, jacobian, state, shape, pass, ROUGH * self.scale);
     }
 
     /// Refines the last solution as far as rounding allows.
@@ -341,8 +363,13 @@ impl System {
         jacobian: &[ScaledRow],
         state: &[RowState],
         shape: &Symbolic,
+        pass: Pass,
     ) {
-        self.refine(blocks, jacobian, state, shape, FINE * self.scale);
+        if pass == Pass::Own && self.raised {
+            // How fast proximal steps converge, the first one does not tell.
+            self.rate = 1.0;
+        }
+        self.refine(blocks, jacobian, state, shape, pass, FINE * self.scale);
     }
 
     /// Corrects until the error to be expected, which shrinks by the same factor each time, is below `goal`, or rounding stops it.
@@ -352,13 +379,14 @@ impl System {
         jacobian: &[ScaledRow],
         state: &[RowState],
         shape: &Symbolic,
+        pass: Pass,
         goal: f64,
     ) {
         for _ in 0..MOST_CORRECTIONS {
             if self.change * self.rate <= goal {
                 break;
             }
-            let change = self.correct(blocks, jacobian, state, shape, false);
+            let change = self.correct(blocks, jacobian, state, shape, pass);
             self.rate = change / self.change;
             self.change = change;
             let falls = self.rate < 0.5;
@@ -378,8 +406,10 @@ impl System {
         jacobian: &[ScaledRow],
         state: &[RowState],
         shape: &Symbolic,
-        first: bool,
+        pass: Pass,
     ) -> f64 {
+        let first = pass == Pass::First;
+        let sigma = if pass == Pass::Own { &self.sigma } else { &self.used_sigma };
         for (dy, y) in self.dy.iter_mut().zip(&self.y) {
             *dy = y.map(|y| -y);
         }
@@ -391,7 +421,7 @@ impl System {
                 let mut force = self.lambda[row];
                 if state[row] == RowState::Free {
                     let jy = if first { 0.0 } else { kernels::dot(&j[0], &ya) + kernels::dot(&j[1], &yb) };
-                    let error = self.rhs[row] - jy - self.used_sigma[row] * force;
+                    let error = self.rhs[row] - jy - sigma[row] * force;
                     self.error[row] = error;
                     if place.own == NONE {
                         force += error * self.inverse_sigma[row];
