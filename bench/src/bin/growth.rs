@@ -21,6 +21,7 @@ mod ode;
 
 use engine::{ContactLine, Engine, Ferrode, Method, Mu};
 use ferrode_collide::{CollideOptions, Cuboid, Plane, Shape, narrow};
+use ferrode_math::random::OdeRandom;
 use ferrode_math::{Pose, Quat, Vec3, real};
 use ode::Ode;
 
@@ -42,6 +43,7 @@ struct Case {
 /// What the builders use of an engine.
 trait Builder {
     fn body(&mut self, mass: f64, sides: Vec3, at: Vec3) -> usize;
+    fn turned_body(&mut self, mass: f64, sides: Vec3, at: Vec3, rotation: Quat) -> usize;
     fn ball(&mut self, first: usize, second: Option<usize>, anchor: Vec3);
     fn hinge(&mut self, first: usize, second: Option<usize>, anchor: Vec3, axis: Vec3, brake: f64);
 }
@@ -49,6 +51,9 @@ trait Builder {
 impl<E: Engine> Builder for E {
     fn body(&mut self, mass: f64, sides: Vec3, at: Vec3) -> usize {
         self.add_box(mass, sides, at, Quat::IDENTITY)
+    }
+    fn turned_body(&mut self, mass: f64, sides: Vec3, at: Vec3, rotation: Quat) -> usize {
+        self.add_box(mass, sides, at, rotation)
     }
     fn ball(&mut self, first: usize, second: Option<usize>, anchor: Vec3) {
         self.add_ball(Some(first), second, anchor);
@@ -134,6 +139,16 @@ const CASES: &[Case] = &[
         build: pile,
     },
     Case {
+        name: "heap",
+        sizes: CONTACT_SIZES,
+        most_for_libode: 160,
+        h: 0.01,
+        cfm: 1e-5,
+        sides: Some(HALF),
+        steps: [60, 10],
+        build: heap,
+    },
+    Case {
         name: "grid",
         sizes: &[25, 100, 400, 900],
         most_for_libode: 100,
@@ -216,6 +231,19 @@ fn pile(world: &mut dyn Builder, n: usize) {
         let shift = 0.07 * ((i * 7 % 5) as f64 - 2.0);
         let at = Vec3::new(0.62 * x as f64 + shift, 0.62 * y as f64 - 0.5 * shift, 0.35 + 0.6 * z as f64);
         world.body(0.125, HALF, at);
+    }
+}
+
+/// As a pile, but every box is turned its own way, so that they tumble over each other.
+fn heap(world: &mut dyn Builder, n: usize) {
+    let side = (1..).find(|s| s * s * s >= n).unwrap_or(1);
+    let mut random = OdeRandom::new(7);
+    let mut unit = || random.next_real() - 0.5;
+    for i in 0..n {
+        let (x, y, z) = (i % side, i / side % side, i / (side * side));
+        let at = Vec3::new(0.7 * x as f64 + 0.1 * unit(), 0.7 * y as f64 + 0.1 * unit(), 0.5 + 0.7 * z as f64);
+        let axis = Vec3::new(unit(), unit(), unit());
+        world.turned_body(0.125, HALF, at, Quat::from_axis_angle(axis, 3.0 * unit()));
     }
 }
 

@@ -119,7 +119,8 @@ impl PivotingReport {
 const CERTIFIED: f64 = 1e-10;
 /// A row counts as wrong when it is off by more than this part of `1 + max |x|`.
 const WRONG: f64 = 1e-14;
-/// The same before refinement.
+/// The same before refinement, which is left out while more than one row in `MANY` is wrong by that much.
+const MANY: usize = 50;
 const CLEARLY_WRONG: f64 = 1e-6;
 /// Rounding of a slack, in parts of its right-hand side.
 const NOISE: f64 = 4e-15;
@@ -321,8 +322,11 @@ impl Solve<'_, '_> {
         work.state.clear();
         for row in 0..p.jacobian.len() {
             let (lo, hi) = (work.lo[row], work.hi[row]);
-            let state =
-                p.states[row][which].unwrap_or_else(|| state_of(s.rhs[row] / s.diagonal[row], lo, hi));
+            let state = p.states[row][which].unwrap_or_else(|| {
+                // A row that asks for nothing carries load, as those of a stack at rest do.
+                let alone = s.rhs[row] / s.diagonal[row];
+                if alone == 0.0 { RowState::Free } else { state_of(alone, lo, hi) }
+            });
             work.state.push(possible(state, lo, hi));
         }
     }
@@ -337,7 +341,7 @@ impl Solve<'_, '_> {
                 return false;
             }
             let mut wrong = self.propose(CLEARLY_WRONG);
-            if wrong == 0 {
+            if wrong * MANY < self.work.state.len() {
                 self.refine_set();
                 wrong = self.propose(WRONG);
             }
