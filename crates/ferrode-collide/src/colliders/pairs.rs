@@ -4,6 +4,7 @@ use super::*;
 use crate::filter::passes;
 use crate::space::Probe;
 use crate::{CollideOptions, GeomContact, narrow};
+use core::cell::Cell;
 
 impl Colliders {
     /// Reports the pairs of members of a space that may touch (ODE's `dSpaceCollide`).
@@ -174,9 +175,14 @@ impl Colliders {
         options: CollideOptions,
         out: &mut Vec<(GeomKey, GeomKey, GeomContact)>,
     ) -> usize {
-        let mut list = Vec::new();
+        thread_local! {
+            /// Kept so that a call allocates nothing.
+            static LIST: Cell<Vec<GeomContact>> = const { Cell::new(Vec::new()) };
+        }
+        let mut list = LIST.take();
         let start = out.len();
         self.contacts_with(a.into(), b.into(), options, &mut list, out);
+        LIST.set(list);
         out.len() - start
     }
 

@@ -2,6 +2,7 @@ use super::dispatch::collide_frames;
 use super::heightfield_trimesh::heightfield_trimesh;
 use super::reduce::reduce;
 use crate::{CollideOptions, Contacts, Convex, Frame, GeomContact, Heightfield, Plane, Shape};
+use core::cell::Cell;
 use ferrode_math::{Aabb, Vec3};
 
 /// Most contacts that one triangle's plane gives.
@@ -75,6 +76,20 @@ impl Zone {
     }
 }
 
+/// Working memory, kept so that a call allocates nothing.
+#[derive(Default)]
+struct Work {
+    tiles: Vec<Tile>,
+    /// Column and row of corners that are done.
+    used: Vec<[i64; 2]>,
+    found: Vec<GeomContact>,
+}
+
+thread_local! {
+    static WORK: Cell<Work> =
+        const { Cell::new(Work { tiles: Vec::new(), used: Vec::new(), found: Vec::new() }) };
+}
+
 fn collide_zone(
     field: &Heightfield,
     zone: &Zone,
@@ -102,8 +117,10 @@ fn collide_zone(
     if let Shape::TriMesh(mesh) = shape {
         return heightfield_trimesh(field, zone, mesh, local, out);
     }
-    let mut tiles = Vec::new();
-    let mut used: Vec<[i64; 2]> = Vec::new();
+    let mut work = WORK.take();
+    let Work { tiles, used, found } = &mut work;
+    tiles.clear();
+    used.clear();
     for x in zone.x[0]..zone.x[1] {
         let [from, to] = rows(field, zone, shape, local, x);
         for z in from..to {
@@ -113,18 +130,27 @@ fn collide_zone(
             tiles.extend(Tile::new([d, c, b], true, aabb.min.y));
         }
     }
-    let mut found: Vec<GeomContact> = Vec::new();
-    for tile in &mut tiles {
+    for tile in tiles.iter_mut() {
         // What touches a triangle has no need of its corners.
-        if tile.collide(shape, local, &mut found, out) {
+        if tile.collide(shape, local, found, out) {
             used.extend(tile.corners.map(|c| c.0));
         }
     }
     // Of the others libode asks by a ray from the corner, which finds nothing.
-    if !wide || !matches!(shape, Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Capsule(_)) {
-        return;
+    if wide && matches!(shape, Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Capsule(_)) {
+        add_corners(shape, local, tiles, used, out);
     }
-    // Corners of the field inside the shape, with the normal of the first triangle it passed by.
+    WORK.set(work);
+}
+
+/// Corners of the field inside the shape, with the normal of the first triangle it passed by. Those in `used` are done.
+fn add_corners(
+    shape: &Shape,
+    local: &Frame,
+    tiles: &[Tile],
+    used: &mut Vec<[i64; 2]>,
+    out: &mut Contacts<'_>,
+) {
     for tile in tiles.iter().filter(|t| t.missed) {
         for (place, corner) in tile.corners {
             if used.contains(&place) {

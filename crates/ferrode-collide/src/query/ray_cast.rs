@@ -4,6 +4,7 @@ use crate::space::Probe;
 use crate::{
     CollideOptions, ColliderError, Colliders, Frame, Geom, GeomContact, GeomKey, Ray, Shape, SpaceKey,
 };
+use core::cell::Cell;
 use ferrode_math::Vec3;
 
 /// Where a ray met a geom.
@@ -47,6 +48,11 @@ impl ShapeRayHit {
     }
 }
 
+thread_local! {
+    /// Working memory of casts, so that none allocates.
+    static HITS: Cell<Vec<GeomContact>> = const { Cell::new(Vec::new()) };
+}
+
 /// A ray that is asked of many shapes.
 struct Caster {
     frame: Frame,
@@ -63,7 +69,7 @@ impl Caster {
         // As long as a ray may be stands for endless.
         let length = if length > 0.0 { length.min(1e150) } else { length };
         Ray::new(length).ok()?;
-        Some(Self { frame: Frame::from(&pose), length, closest, contacts: Vec::new() })
+        Some(Self { frame: Frame::from(&pose), length, closest, contacts: HITS.take() })
     }
 
     /// The hits with one shape up to `limit`.
@@ -79,6 +85,12 @@ impl Caster {
             narrow::collide_frames((&ray, &self.frame), (shape, frame), options, &mut self.contacts);
         }
         &self.contacts
+    }
+}
+
+impl Drop for Caster {
+    fn drop(&mut self) {
+        HITS.set(core::mem::take(&mut self.contacts));
     }
 }
 

@@ -1,8 +1,8 @@
 //! A binary tree of boxes whose leaves come, go and move.
 
 use super::f32_box::{Box32, Pending};
-use super::pair_nodes::{Node, Nodes};
-use super::probe::{Probe, nearer};
+use super::pair_nodes::{Node, Nodes, PairNode};
+use super::probe::{Probe, RayLanes, nearer};
 use super::tree::split;
 
 const NONE: u32 = u32::MAX;
@@ -299,23 +299,39 @@ impl DynamicTree {
     /// Calls `found` with the payload of each leaf that the probe meets within the limit, nearer ones first as far as
     /// the boxes tell. `found` may lower the limit.
     #[inline]
-    pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
+    pub fn seek(&self, probe: &Probe, limit: &mut f64, found: impl FnMut(u32, &mut f64)) {
         if self.count == 0 || probe.enter(&self.nodes.bounds(0), *limit).is_none() {
             return;
         }
+        match probe.lanes(&self.nodes.bounds(0)) {
+            Some(lanes) => self.seek_by(limit, found, |pair, _, near| lanes.enter_pair(pair, near)),
+            None => self.seek_by(limit, found, |pair, limit, _| probe.enter_pair(pair, limit)),
+        }
+    }
+
+    /// `enter` tells for a pair of nodes, the limit and the limit in single precision which of the two are met, and where.
+    #[inline(always)]
+    fn seek_by(
+        &self,
+        limit: &mut f64,
+        mut found: impl FnMut(u32, &mut f64),
+        enter: impl Fn(&PairNode, f64, f32) -> ([bool; 2], [f32; 2]),
+    ) {
         let mut pending: Pending<(u32, f32)> = Pending::new();
+        let mut near = RayLanes::limit(*limit);
         let mut i = 0;
         loop {
-            let (child, payload) = self.nodes.numbers(i);
+            let (link, payload) = self.nodes.numbers(i);
             let mut next = None;
-            if child == NONE {
+            if link == NONE {
                 found(payload, limit);
+                near = RayLanes::limit(*limit);
             } else {
-                next = nearer(child, probe.enter_pair(self.nodes.pair(child), *limit), &mut pending);
+                next = nearer(link, enter(self.nodes.pair(link), *limit, near), &mut pending);
             }
             while next.is_none() {
                 let Some((waiting, at)) = pending.pop() else { return };
-                if f64::from(at) <= *limit {
+                if at <= near {
                     next = Some(waiting);
                 }
             }

@@ -6,8 +6,8 @@ use super::f32_box::Box32;
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct PairNode {
-    pub min: [[f32; 2]; 3],
-    pub max: [[f32; 2]; 3],
+    /// Along each axis the lower sides of both, then the upper ones.
+    pub sides: [[[f32; 2]; 2]; 3],
     link: [u32; 2],
     tag: [u32; 2],
 }
@@ -24,11 +24,8 @@ pub(crate) struct Node {
 
 impl PairNode {
     #[inline(always)]
-    fn bounds(&self, l: usize) -> Box32 {
-        Box32 {
-            min: [self.min[0][l], self.min[1][l], self.min[2][l]],
-            max: [self.max[0][l], self.max[1][l], self.max[2][l]],
-        }
+    pub fn bounds(&self, l: usize) -> Box32 {
+        Box32 { min: self.sides.map(|s| s[0][l]), max: self.sides.map(|s| s[1][l]) }
     }
 
     /// Which of the two boxes overlap `b`.
@@ -37,7 +34,7 @@ impl PairNode {
         let mut hit = [true; 2];
         for i in 0..3 {
             for (l, hit) in hit.iter_mut().enumerate() {
-                *hit &= (self.min[i][l] <= b.max[i]) & (self.max[i][l] >= b.min[i]);
+                *hit &= (self.sides[i][0][l] <= b.max[i]) & (self.sides[i][1][l] >= b.min[i]);
             }
         }
         hit
@@ -52,8 +49,7 @@ pub(crate) struct Nodes {
 
 impl Nodes {
     const VACANT: PairNode = PairNode {
-        min: [[f32::INFINITY; 2]; 3],
-        max: [[f32::NEG_INFINITY; 2]; 3],
+        sides: [[[f32::INFINITY; 2], [f32::NEG_INFINITY; 2]]; 3],
         link: [u32::MAX; 2],
         tag: [u32::MAX; 2],
     };
@@ -116,8 +112,8 @@ impl Nodes {
     pub fn set_bounds(&mut self, i: u32, b: &Box32) {
         let (p, l) = (&mut self.pairs[(i >> 1) as usize], (i & 1) as usize);
         for k in 0..3 {
-            p.min[k][l] = b.min[k];
-            p.max[k][l] = b.max[k];
+            p.sides[k][0][l] = b.min[k];
+            p.sides[k][1][l] = b.max[k];
         }
     }
 

@@ -108,29 +108,40 @@ impl Probe {
         self.enter_bounds(b.min.to_array(), b.max.to_array(), limit)
     }
 
-    /// As [`enter_bounds`](Self::enter_bounds) for two boxes at once: where each is met, if it is.
+    /// As [`enter_bounds`](Self::enter_bounds) for two boxes at once: whether each is met, and where, rounded down.
     #[inline(always)]
-    pub(crate) fn enter_pair(&self, pair: &PairNode, limit: f64) -> [Option<f64>; 2] {
-        if self.kind != Kind::Ray || self.flat {
-            return [0, 1].map(|l| {
-                let min = [0, 1, 2].map(|i| f64::from(pair.min[i][l]));
-                let max = [0, 1, 2].map(|i| f64::from(pair.max[i][l]));
-                self.enter_bounds(min, max, limit)
-            });
+    pub(crate) fn enter_pair(&self, pair: &PairNode, limit: f64) -> ([bool; 2], [f32; 2]) {
+        let at = [0, 1].map(|l| {
+            let b = pair.bounds(l);
+            self.enter(&b, limit)
+        });
+        (at.map(|x| x.is_some()), at.map(|x| down(x.unwrap_or(0.0))))
+    }
+
+    /// The ray for boxes in single precision within `all`; `None` if this is no ray, or one for which that is too little.
+    #[inline]
+    pub(crate) fn lanes(&self, all: &Box32) -> Option<RayLanes> {
+        if self.kind != Kind::Ray {
+            return None;
         }
-        let (mut lo, mut hi) = ([0.0f64; 2], [limit; 2]);
+        let mut lanes = RayLanes { origin: [[0.0; 4]; 3], inverse: [[0.0; 4]; 3], near: [0; 3] };
         for i in 0..3 {
-            let (o, inverse) = (self.origin[i], self.inverse[i]);
-            for l in 0..2 {
-                let s = (f64::from(pair.min[i][l]) - o) * inverse;
-                let t = (f64::from(pair.max[i][l]) - o) * inverse;
-                lo[l] = greater(lesser(s, t), lo[l]);
-                hi[l] = lesser(greater(s, t), hi[l]);
+            // Across an axis the ray is taken to go along it by next to nothing.
+            let inverse = self.inverse[i].clamp(-STEEPEST, STEEPEST);
+            let sign = if inverse < 0.0 { -1.0 } else { 1.0 };
+            // Rounding of the origin and of differences from it, as a length.
+            let reach = self.origin[i].abs() + f64::from(all.min[i].abs().max(all.max[i].abs()));
+            let pad = reach * ROUNDING * sign;
+            let (near, far) = ((self.origin[i] + pad) as f32, (self.origin[i] - pad) as f32);
+            let inverse = inverse as f32;
+            lanes.origin[i] = [near, near, far, far];
+            lanes.inverse[i] = [inverse, inverse, -inverse, -inverse];
+            lanes.near[i] = usize::from(sign < 0.0);
+            if !(near.is_finite() && far.is_finite() && inverse != 0.0) {
+                return None;
             }
         }
-        // Neither is negative unless the limit is.
-        let met = |l: usize| (lo[l] <= hi[l] + SLACK * (lo[l] + hi[l])).then_some(lo[l]);
-        [met(0), met(1)]
+        Some(lanes)
     }
 
     #[inline(always)]
@@ -150,17 +161,63 @@ fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
+/// More than the relative rounding of a few operations in single precision.
+const ROUNDING: f64 = 1.0 / (1u64 << 21) as f64;
+/// The largest reciprocal of a ray's direction in single precision: differences of coordinates times it stay finite.
+const STEEPEST: f64 = 1e28;
+
+/// A ray against two boxes at once, in single precision: lanes for where it enters either, and for minus where it leaves.
+/// Errs on the side of meeting.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RayLanes {
+    origin: [[f32; 4]; 3],
+    inverse: [[f32; 4]; 3],
+    /// Along each axis the side that the ray meets first.
+    near: [usize; 3],
+}
+
+impl RayLanes {
+    /// Whether each is met within `limit`, and where, rounded down.
+    #[inline(always)]
+    pub fn enter_pair(&self, pair: &PairNode, limit: f32) -> ([bool; 2], [f32; 2]) {
+        const WIDER: f32 = 1.0 + 4.0 * ROUNDING as f32;
+        let mut at = [0.0, 0.0, -limit, -limit];
+        for i in 0..3 {
+            let sides = &pair.sides[i];
+            let (near, far) = (sides[self.near[i] & 1], sides[(self.near[i] & 1) ^ 1]);
+            let planes = [near[0], near[1], far[0], far[1]];
+            for l in 0..4 {
+                let x = (planes[l] - self.origin[i][l]) * self.inverse[i][l];
+                at[l] = if x > at[l] { x } else { at[l] };
+            }
+        }
+        // Neither entry is negative.
+        let met = [0, 1].map(|l| at[l] <= -at[l + 2] * WIDER);
+        (met, [at[0] * (2.0 - WIDER), at[1] * (2.0 - WIDER)])
+    }
+
+    /// A limit in single precision, not below the one given.
+    #[inline(always)]
+    pub fn limit(limit: f64) -> f32 {
+        (limit * (1.0 + ROUNDING)) as f32
+    }
+}
+
 /// Of the children `c` and `c + 1`, and where they are met: the one to go on with; the other has to wait.
 #[inline(always)]
-pub(crate) fn nearer(c: u32, at: [Option<f64>; 2], pending: &mut Pending<(u32, f32)>) -> Option<u32> {
-    match (at[0], at[1]) {
-        (Some(a), Some(b)) => {
-            let (near, far, at) = if b < a { (c + 1, c, a) } else { (c, c + 1, b) };
-            pending.push((far, down(at)));
-            Some(near)
+pub(crate) fn nearer(
+    c: u32,
+    (met, at): ([bool; 2], [f32; 2]),
+    pending: &mut Pending<(u32, f32)>,
+) -> Option<u32> {
+    match met {
+        [true, true] => {
+            let second = u32::from(at[1] < at[0]);
+            pending.push((c + (second ^ 1), at[(second ^ 1) as usize]));
+            Some(c + second)
         }
-        (Some(_), None) => Some(c),
-        (None, Some(_)) => Some(c + 1),
-        (None, None) => None,
+        [true, false] => Some(c),
+        [false, true] => Some(c + 1),
+        [false, false] => None,
     }
 }

@@ -1,8 +1,8 @@
 //! A binary tree over boxes that stay: the triangles of a mesh.
 
 use super::f32_box::{Box32, Pending};
-use super::pair_nodes::{Node, Nodes};
-use super::probe::{Probe, nearer};
+use super::pair_nodes::{Node, Nodes, PairNode};
+use super::probe::{Probe, RayLanes, nearer};
 use ferrode_math::Aabb;
 
 /// Most items in a leaf. Four triangles are tested as fast as the three more boxes that would tell them apart.
@@ -88,23 +88,39 @@ impl AabbTree {
     /// Calls `found` with the number of each box that the probe meets within the limit, and a few beside these, nearer
     /// ones first as far as their boxes tell. `found` may lower the limit.
     #[inline]
-    pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
+    pub fn seek(&self, probe: &Probe, limit: &mut f64, found: impl FnMut(u32, &mut f64)) {
         if self.nodes.is_empty() || probe.enter(&self.nodes.bounds(0), *limit).is_none() {
             return;
         }
+        match probe.lanes(&self.nodes.bounds(0)) {
+            Some(lanes) => self.seek_by(limit, found, |pair, _, near| lanes.enter_pair(pair, near)),
+            None => self.seek_by(limit, found, |pair, limit, _| probe.enter_pair(pair, limit)),
+        }
+    }
+
+    /// `enter` tells for a pair of nodes, the limit and the limit in single precision which of the two are met, and where.
+    #[inline(always)]
+    fn seek_by(
+        &self,
+        limit: &mut f64,
+        mut found: impl FnMut(u32, &mut f64),
+        enter: impl Fn(&PairNode, f64, f32) -> ([bool; 2], [f32; 2]),
+    ) {
         let mut pending: Pending<(u32, f32)> = Pending::new();
+        let mut near = RayLanes::limit(*limit);
         let mut i = 0;
         loop {
             let (link, count) = self.nodes.numbers(i);
             let mut next = None;
             if count > 0 {
                 self.items(link, count).iter().for_each(|&item| found(item, limit));
+                near = RayLanes::limit(*limit);
             } else {
-                next = nearer(link, probe.enter_pair(self.nodes.pair(link), *limit), &mut pending);
+                next = nearer(link, enter(self.nodes.pair(link), *limit, near), &mut pending);
             }
             while next.is_none() {
                 let Some((waiting, at)) = pending.pop() else { return };
-                if f64::from(at) <= *limit {
+                if at <= near {
                     next = Some(waiting);
                 }
             }
