@@ -341,7 +341,9 @@ pub fn manifolds(
         return match convex_manifold(a, b, margin, &mut Axis::default(), &mut one) {
             Touching::Apart(by) => by,
             Touching::Yes => {
-                out.push(one);
+                if one.is_sound() {
+                    out.push(one);
+                }
                 0.0
             }
         };

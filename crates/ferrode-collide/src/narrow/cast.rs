@@ -20,18 +20,58 @@ pub struct CastHit {
     pub depth: f64,
 }
 
+/// Most stretches of a path over a field: beyond, a path over a field without end meets nothing.
+const STRETCHES: usize = 4096;
+
 /// The first hit with a triangle of a field, in whose coordinates the body is.
 fn body_field(body: &Body<'_>, path: Vec3, field: &Heightfield) -> Option<CastHit> {
     let start = bounds(body);
-    let end = Aabb::new(start.min + path, start.max + path);
+    let (from, to) = within(&start, path, &field.aabb(&Frame::IDENTITY))?;
+    // A stretch at a time, as long as the body or a cell: the box around all of a slanting path holds far more cells.
+    let (sx, sz) = field.cell();
+    let e = start.extent();
+    let along = |p: f64, e: f64, cell: f64| p.abs() / (e + cell);
+    let stretches = ((to - from) * along(path.x, e.x, sx).max(along(path.z, e.z, sz))).max(1.0);
+    let step = (to - from) / stretches;
     let mut best: Option<CastHit> = None;
-    field.triangles_in(&start.union(&end), 2000, |corners| {
-        let hit = bodies(body, path, &Body::triangle(corners));
-        if hit.is_some_and(|h| h.before(best)) {
-            best = hit;
+    for k in 0..(stretches.ceil() as usize).min(STRETCHES) {
+        let (here, there) = (from + step * k as f64, (from + step * (k + 1) as f64).min(to));
+        if best.is_some_and(|b| b.fraction < here) {
+            break;
         }
-    });
+        let at = |t: f64| Aabb::new(start.min + path * t, start.max + path * t);
+        field.triangles_in(&at(here).union(&at(there)), 2000, |corners| {
+            let [p, q, r] = corners;
+            let around = Aabb::new(p.min(q).min(r), p.max(q).max(r));
+            let limit = best.map_or(1.0, |b| b.fraction);
+            if within(&start, path, &around).is_some_and(|t| t.0 <= limit) {
+                let hit = bodies(body, path, &Body::triangle(corners));
+                if hit.is_some_and(|h| h.before(best)) {
+                    best = hit;
+                }
+            }
+        });
+    }
     best
+}
+
+/// The part of a path, 0 to 1, on which a box that moves along it shares points with another; a hair more, against
+/// rounding.
+fn within(moving: &Aabb, path: Vec3, fixed: &Aabb) -> Option<(f64, f64)> {
+    let (mut from, mut to) = (0.0f64, 1.0f64);
+    for i in 0..3 {
+        let (low, high) = (fixed.min[i] - moving.max[i], fixed.max[i] - moving.min[i]);
+        if path[i] == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let (s, t) = (low / path[i], high / path[i]);
+        from = from.max(s.min(t) - 1e-9);
+        to = to.min(s.max(t) + 1e-9);
+    }
+    (from <= to).then_some((from, to))
 }
 
 impl CastHit {
