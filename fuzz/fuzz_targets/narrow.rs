@@ -30,7 +30,7 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
         m.refresh(&fa, &fb);
     }
     if let Some(d) = narrow::distance((&a, &pa), (&b, &pb)) {
-        assert!(!d.distance.is_nan(), "{d:?}");
+        assert!(!d.distance.is_nan(), "{d:?} {a:?} {pa:?} {b:?} {pb:?}");
     }
     narrow::shape_cast((&a, &fa), vector(u)?, (&b, &fb));
     Ok(())

@@ -31,7 +31,7 @@ fn run(u: &mut Unstructured<'_>) -> Result<()> {
     let at = pose(u)?;
     let frame = Frame::from(&at);
     let aabb = shape.aabb_in(&frame);
-    assert!(!(aabb.min.x.is_nan() || aabb.max.x.is_nan()), "{aabb:?}");
+    assert!(!(aabb.min.x.is_nan() || aabb.max.x.is_nan()), "{aabb:?} {shape:?} {at:?}");
     let p = vector(u)?;
     point_depth(&shape, &frame, p);
     if let Some(hit) = ray_cast(&shape, &frame, p, vector(u)?, 1e3) {

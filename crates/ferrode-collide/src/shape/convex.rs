@@ -195,7 +195,7 @@ fn check_points(points: &[Vec3]) -> Result<(), ShapeError> {
             value: points.len() as f64,
         });
     }
-    match points.iter().find(|p| !(p.abs_max() <= LARGEST)) {
+    match points.iter().find(|p| !(p.is_finite() && p.abs_max() <= LARGEST)) {
         Some(p) => Err(ShapeError { what: "coordinate of a convex polyhedron's point", value: p.abs_max() }),
         None => Ok(()),
     }
@@ -260,6 +260,9 @@ mod tests {
         assert!(Convex::from_points(&[Vec3::ZERO; 6]).is_err());
         assert!(Convex::from_points(&flat[..3]).is_err());
         assert!(Convex::from_points(&[Vec3::X * f64::NAN; 4]).is_err());
+        let mut points = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+        points.push(Vec3::new(0.1, f64::NAN, 0.1));
+        assert!(Convex::from_points(&points).is_err());
         assert!(Convex::from_faces(&flat, &[[0, 1, 9], [0, 1, 2], [0, 1, 3], [0, 2, 3]]).is_err());
     }
 }

@@ -65,7 +65,7 @@ impl TriMesh {
         if triangles.is_empty() {
             return Err(ShapeError { what: "number of triangles of a mesh", value: 0.0 });
         }
-        if let Some(p) = vertices.iter().find(|p| !(p.abs_max() <= LARGEST)) {
+        if let Some(p) = vertices.iter().find(|p| !(p.is_finite() && p.abs_max() <= LARGEST)) {
             return Err(ShapeError { what: "coordinate of a mesh's vertex", value: p.abs_max() });
         }
         let bad = triangles.iter().flatten().find(|&&i| i as usize >= vertices.len());
@@ -333,6 +333,8 @@ mod tests {
         assert!(TriMesh::new(vec![Vec3::ZERO; 3], vec![]).is_err());
         assert!(TriMesh::new(vec![Vec3::ZERO; 3], vec![[0, 1, 3]]).is_err());
         assert!(TriMesh::new(vec![Vec3::X * f64::NAN; 3], vec![[0, 1, 2]]).is_err());
+        // In one coordinate only.
+        assert!(TriMesh::new(vec![Vec3::new(1.0, f64::NAN, 0.0); 3], vec![[0, 1, 2]]).is_err());
         // A triangle without area is kept, but has no normal.
         let line = TriMesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::X * 2.0], vec![[0, 1, 2]]).unwrap();
         assert_eq!(line.normal(0), Vec3::ZERO);
