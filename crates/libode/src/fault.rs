@@ -171,3 +171,18 @@ macro_rules! export {
     };
 }
 pub(crate) use export;
+
+/// As [`export`], for functions that may call the program's: what these throw passes through.
+macro_rules! export_calling {
+    ($($(#[$meta:meta])* fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $(-> $ret:ty)? $body:block)+) => {
+        $(
+            $(#[$meta])*
+            #[allow(clippy::missing_safety_doc)]
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C-unwind" fn $name($($arg: $ty),*) $(-> $ret)? {
+                $crate::fault::fence(stringify!($name), move || Ok($body))
+            }
+        )+
+    };
+}
+pub(crate) use export_calling;

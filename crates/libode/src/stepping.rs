@@ -1,6 +1,6 @@
 //! Steps: what is taken in before, called meanwhile, and shown after.
 
-use crate::fault::{Fault, Outcome, export, fence, message};
+use crate::fault::{Fault, Outcome, export, export_calling, fence, message};
 use crate::misc;
 use crate::real::{In, Out, Real, f, padded};
 use crate::record::{BodyId, JointId, Required, WorldId, WorldRecord, handle_of};
@@ -289,7 +289,6 @@ export! {
         }
         1
     }
-    fn dWorldCleanupWorkingMemory(world: WorldId) { world.get()?.settings.free_step_memory() }
     fn dWorldSetStepMemoryReservationPolicy(world: WorldId, policy: In<ReserveInfo>) -> c_int {
         let world = world.get()?;
         let policy = policy.optional().map(|[policy]| policy);
@@ -297,17 +296,6 @@ export! {
             return Err(Fault::user("Bad policy info"));
         }
         world.settings.reserve.set(policy.unwrap_or_default());
-        1
-    }
-    fn dWorldSetStepMemoryManager(world: WorldId, functions: In<MemoryFunctions>) -> c_int {
-        let world = world.get()?;
-        let functions = functions.optional().map(|[functions]| functions);
-        if functions.is_some_and(|m| m.struct_size as usize != size_of::<MemoryFunctions>()
-            || m.alloc_block.is_none() || m.free_block.is_none()) {
-            return Err(Fault::user("Bad memory functions info"));
-        }
-        world.settings.free_step_memory();
-        world.settings.manager.set(functions);
         1
     }
     fn dWorldSetStepThreadingImplementation(
@@ -318,5 +306,20 @@ export! {
             return Err(Fault::user("Bad threading functions info"));
         }
         world.get()?.settings.threading.set(functions.map(|functions| (functions, implementation)))
+    }
+}
+
+export_calling! {
+    fn dWorldCleanupWorkingMemory(world: WorldId) { world.get()?.settings.free_step_memory() }
+    fn dWorldSetStepMemoryManager(world: WorldId, functions: In<MemoryFunctions>) -> c_int {
+        let world = world.get()?;
+        let functions = functions.optional().map(|[functions]| functions);
+        if functions.is_some_and(|m| m.struct_size as usize != size_of::<MemoryFunctions>()
+            || m.alloc_block.is_none() || m.free_block.is_none()) {
+            return Err(Fault::user("Bad memory functions info"));
+        }
+        world.settings.free_step_memory();
+        world.settings.manager.set(functions);
+        1
     }
 }

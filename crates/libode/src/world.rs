@@ -71,8 +71,10 @@ fn destroy(world: &'static WorldRecord) -> usize {
             Record::pool().destroy(joint);
         }
     }
-    world.settings.free_step_memory();
+    *world.listeners.borrow_mut() = Vec::new();
     world.destroy_engine();
+    // Last, since the program's function may not come back.
+    world.settings.free_step_memory();
     WorldRecord::pool().destroy(world);
     orphans
 }
@@ -179,7 +181,7 @@ export! {
 /// Destroys a world; for every joint that a group keeps there is a message, as in ODE.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn dWorldDestroy(world: WorldId) {
-    let orphans = crate::fault::guard("dWorldDestroy", || Ok(destroy(world.get()?)));
+    let orphans = crate::fault::fence("dWorldDestroy", || Ok(destroy(world.get()?)));
     for _ in 0..orphans {
         message(0, "warning: destroying world containing grouped joints", "");
     }

@@ -2,7 +2,7 @@
 
 use super::{GeomId, GeomRecord, class};
 use crate::contact::ContactGeomRecord;
-use crate::fault::{Fault, Outcome, export};
+use crate::fault::{Fault, Outcome, export, export_calling};
 use crate::real::{In, Real};
 use crate::record::Required;
 use core::cell::{Cell, RefCell};
@@ -184,6 +184,14 @@ export! {
     }
 
     fn dCreateGeomTransform(space: GeomId) -> GeomId { GeomRecord::create(class::TRANSFORM, None, None, space)? }
+    fn dGeomTransformGetGeom(geom: GeomId) -> GeomId { transform(geom)?.own.inner.get() }
+    fn dGeomTransformSetCleanup(geom: GeomId, mode: c_int) { transform(geom)?.own.owns.set(mode != 0) }
+    fn dGeomTransformGetCleanup(geom: GeomId) -> c_int { transform(geom)?.own.owns.get().into() }
+    fn dGeomTransformSetInfo(geom: GeomId, mode: c_int) { transform(geom)?.own.info.set(mode != 0) }
+    fn dGeomTransformGetInfo(geom: GeomId) -> c_int { transform(geom)?.own.info.get().into() }
+}
+
+export_calling! {
     fn dGeomTransformSetGeom(geom: GeomId, inner: GeomId) {
         let geom = transform(geom)?;
         if let Some(old) = geom.inner().filter(|_| geom.own.owns.get()) {
@@ -192,9 +200,4 @@ export! {
         geom.own.inner.set(inner);
         geom.moved()?
     }
-    fn dGeomTransformGetGeom(geom: GeomId) -> GeomId { transform(geom)?.own.inner.get() }
-    fn dGeomTransformSetCleanup(geom: GeomId, mode: c_int) { transform(geom)?.own.owns.set(mode != 0) }
-    fn dGeomTransformGetCleanup(geom: GeomId) -> c_int { transform(geom)?.own.owns.get().into() }
-    fn dGeomTransformSetInfo(geom: GeomId, mode: c_int) { transform(geom)?.own.info.set(mode != 0) }
-    fn dGeomTransformGetInfo(geom: GeomId) -> c_int { transform(geom)?.own.info.get().into() }
 }

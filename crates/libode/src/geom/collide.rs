@@ -71,10 +71,13 @@ fn contacts_of(
     // A filter needs all contacts to choose from.
     let max_contacts = if filter.is_some() { u16::MAX } else { left as u16 };
     let options = CollideOptions { max_contacts, ..options };
-    let mut found = FOUND.take();
+    let (view_a, view_b) = (sa.view_for(&fa, sb, &fb), sb.view_for(&fb, sa, &fa));
+    let (fa, fb) = (view_a.frame(fa), view_b.frame(fb));
+    // In a static destructor the thread's memory may be gone.
+    let mut found = FOUND.try_with(RefCell::take).unwrap_or_default();
     found.clear();
-    sa.shape.with(|sa| {
-        sb.shape.with(|sb| {
+    view_a.with(sa, |sa| {
+        view_b.with(sb, |sb| {
             if let (Some(sa), Some(sb)) = (sa, sb) {
                 collide_frames((sa, &fa), (sb, &fb), options, &mut found);
             }
@@ -93,7 +96,7 @@ fn contacts_of(
         write(target, from + i, contact, ga, gb);
     }
     let count = found.len().min(left);
-    FOUND.with(|kept| *kept.borrow_mut() = found);
+    FOUND.try_with(|kept| *kept.borrow_mut() = found).ok();
     from + count
 }
 

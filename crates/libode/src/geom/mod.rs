@@ -5,6 +5,7 @@
 
 mod classes;
 mod collide;
+mod convex;
 mod heightfield;
 mod kept;
 mod pose;
@@ -12,7 +13,7 @@ mod shapes;
 mod space;
 mod trimesh;
 
-use crate::fault::{Fault, Outcome, export};
+use crate::fault::{Fault, Outcome, export, export_calling};
 use crate::real::{Real, Real4, Real12, mat3, r, vector};
 use crate::record::{BodyId, BodyRecord, Required, record};
 use crate::slab::{Handle, Link, Pool, Record, Tag};
@@ -77,6 +78,7 @@ pub struct GeomRecord {
     contents: RefCell<Option<Box<SpaceData>>>,
     /// Collisions that report this space's members now.
     locks: Cell<u32>,
+    convex: convex::ConvexGeom,
     mesh: trimesh::MeshGeom,
     field: heightfield::FieldGeom,
     own: classes::ClassGeom,
@@ -168,8 +170,15 @@ impl GeomRecord {
         let (p, m) = (vector(&body.position.get()), mat3(&body.rotation.get()));
         let Some(offset) = self.offset() else { return Frame::new(p, m) };
         let frame = Frame::new(p + m * offset.position, m * offset.rotation);
-        self.position.set(crate::real::padded(frame.position));
-        self.rotation.set(crate::real::matrix3(&frame.rotation));
+        let (position, rotation) =
+            (crate::real::padded(frame.position), crate::real::matrix3(&frame.rotation));
+        // Threads may look at one geom at once: what is up to date is not written.
+        if self.position.get() != position {
+            self.position.set(position);
+        }
+        if self.rotation.get() != rotation {
+            self.rotation.set(rotation);
+        }
         frame
     }
 
@@ -194,25 +203,33 @@ impl GeomRecord {
             return Aabb::new(v(ax, ay, az), v(bx, by, bz));
         }
         match self.solid() {
-            Some((geom, frame)) => {
+            Some((geom, frame)) => geom.unbounded_field_aabb(&frame).unwrap_or_else(|| {
                 geom.shape.with(|shape| shape.as_ref().map_or(Aabb::EMPTY, |shape| shape.aabb_in(&frame)))
-            }
+            }),
             None => Aabb::new(Vec3::ZERO, Vec3::ZERO),
         }
     }
 
     /// The geom whose shape counts, and where it is: another one for a wrapper, none for an empty wrapper.
     fn solid(&self) -> Option<(&Self, Frame)> {
-        self.refresh_mesh();
-        self.refresh_field();
+        self.refresh();
         if self.class.get() != class::TRANSFORM {
             return Some((self, self.frame()));
         }
         let (outer, inner) = (self.frame(), self.inner()?);
-        inner.refresh_mesh();
-        inner.refresh_field();
+        inner.refresh();
         let own = inner.frame();
         Some((inner, Frame::new(outer.point_to_world(own.position), outer.rotation * own.rotation)))
+    }
+
+    /// Takes over what the program has changed in data that it shares with the geom.
+    fn refresh(&self) {
+        match self.class.get() {
+            class::CONVEX => self.refresh_convex(),
+            class::TRIMESH => self.refresh_mesh(),
+            class::HEIGHTFIELD => self.refresh_field(),
+            _ => {}
+        }
     }
 
     /// Notes that pose or shape have changed: the space it is in puts it first, and spaces above learn of it.
@@ -291,6 +308,7 @@ impl GeomRecord {
             space::remove(parent, self)?;
         }
         self.shape.set(None);
+        self.forget_convex();
         *self.contents.borrow_mut() = None;
         GEOMS.destroy(self);
         Ok(())
@@ -406,7 +424,6 @@ fn six(aabb: &Aabb) -> [Real; 6] {
 }
 
 export! {
-    fn dGeomDestroy(geom: GeomId) { geom.get()?.destroy()? }
     fn dGeomSetData(geom: GeomId, data: *mut c_void) { geom.get()?.data.set(data) }
     fn dGeomGetData(geom: GeomId) -> *mut c_void { geom.get()?.data.get() }
     fn dGeomGetClass(geom: GeomId) -> c_int { geom.get()?.class.get() }
@@ -418,7 +435,6 @@ export! {
     fn dBodyGetFirstGeom(body: BodyId) -> GeomId { body.get()?.first_geom.get().handle() }
     fn dBodyGetNextGeom(geom: GeomId) -> GeomId { geom.get()?.next_on_body.get().handle() }
     fn dGeomGetBodyNext(geom: GeomId) -> GeomId { geom.get()?.next_on_body.get().handle() }
-    fn dGeomGetAABB(geom: GeomId, aabb: crate::real::Out<Real, 6>) { aabb.set(six(&geom.get()?.current_aabb()))? }
     fn dInfiniteAABB(_geom: GeomId, aabb: crate::real::Out<Real, 6>) { aabb.set(six(&Aabb::EVERYTHING))? }
     fn dGeomSetCategoryBits(geom: GeomId, bits: c_ulong) { set_bits(geom, |geom| geom.category.set(bits))? }
     fn dGeomGetCategoryBits(geom: GeomId) -> c_ulong { geom.get()?.category.get() }
@@ -427,4 +443,9 @@ export! {
     fn dGeomEnable(geom: GeomId) { set_enabled(geom, true)? }
     fn dGeomDisable(geom: GeomId) { set_enabled(geom, false)? }
     fn dGeomIsEnabled(geom: GeomId) -> c_int { (!geom.get()?.disabled.get()).into() }
+}
+
+export_calling! {
+    fn dGeomDestroy(geom: GeomId) { geom.get()?.destroy()? }
+    fn dGeomGetAABB(geom: GeomId, aabb: crate::real::Out<Real, 6>) { aabb.set(six(&geom.get()?.current_aabb()))? }
 }

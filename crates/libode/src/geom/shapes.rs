@@ -4,10 +4,8 @@ use super::{GeomId, GeomRecord, class};
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{Out, OutVector, Real, f, r, vec3, vector3};
 use crate::record::Required;
-use core::ffi::{c_int, c_uint};
-use ferrode_collide::{
-    Capsule, Convex, Cuboid, Cylinder, Plane, Ray, Shape, ShapeError, Sphere, point_depth,
-};
+use core::ffi::c_int;
+use ferrode_collide::{Capsule, Cuboid, Cylinder, Plane, Ray, Shape, ShapeError, Sphere, point_depth};
 use ferrode_math::Vec3;
 
 fn made<S: Into<Shape>>(shape: Result<S, ShapeError>) -> Outcome<Shape> {
@@ -26,7 +24,11 @@ fn of_class(geom: GeomId, class: c_int, fault: &'static str) -> Outcome<&'static
 
 /// Gives a geom another shape of its class.
 fn reshape<S: Into<Shape>>(geom: &GeomRecord, shape: Result<S, ShapeError>) -> Outcome<()> {
-    let shape = made(shape)?;
+    reshape_to(geom, made(shape)?)
+}
+
+/// As [`reshape`], with a shape that is known to be one.
+pub fn reshape_to(geom: &GeomRecord, shape: Shape) -> Outcome<()> {
     if let Some(parent) = geom.parent() {
         parent.require_unlocked()?;
     }
@@ -110,32 +112,6 @@ fn ray_options(geom: GeomId, change: impl FnOnce(&mut Ray)) -> Outcome<()> {
 fn ray_option(geom: GeomId, option: impl FnOnce(&Ray) -> bool) -> Outcome<c_int> {
     let geom = ray(geom)?;
     Ok(option(&shape_of!(geom, Ray)).into())
-}
-
-/// The polyhedron of a program's arrays: corners, and for each face the number of its corners and these.
-fn convex_by(
-    points: *const Real,
-    point_count: c_uint,
-    polygons: *const c_uint,
-    plane_count: c_uint,
-) -> Outcome<Shape> {
-    if points.is_null() || polygons.is_null() {
-        return Err(Fault::ARGUMENT);
-    }
-    // SAFETY: not null, and three numbers a point (the exported functions' contract).
-    let points = unsafe { core::slice::from_raw_parts(points, 3 * point_count as usize) };
-    let points: Vec<Vec3> = points.chunks_exact(3).map(|p| vec3(p[0], p[1], p[2])).collect();
-    let mut faces = Vec::with_capacity(plane_count as usize);
-    let mut at = 0;
-    for _ in 0..plane_count {
-        // SAFETY: as above: each face is a number of corners and as many indices.
-        let count = unsafe { polygons.add(at).read() } as usize;
-        // SAFETY: as above.
-        let face: &[u32] = unsafe { core::slice::from_raw_parts(polygons.add(at + 1), count) };
-        faces.push(face.to_vec());
-        at += 1 + count;
-    }
-    made(Convex::from_faces(&points, &faces))
 }
 
 export! {
@@ -256,20 +232,4 @@ export! {
     fn dGeomRayGetBackfaceCull(geom: GeomId) -> c_int { ray_option(geom, |ray| ray.backface_cull)? }
     fn dGeomRaySetClosestHit(geom: GeomId, on: c_int) { ray_options(geom, |ray| ray.closest_hit = on != 0)? }
     fn dGeomRayGetClosestHit(geom: GeomId) -> c_int { ray_option(geom, |ray| ray.closest_hit)? }
-
-    fn dCreateConvex(
-        space: GeomId, _planes: *const Real, plane_count: c_uint, points: *const Real, point_count: c_uint,
-        polygons: *const c_uint,
-    ) -> GeomId {
-        let shape = convex_by(points, point_count, polygons, plane_count)?;
-        GeomRecord::create(class::CONVEX, Some(shape), None, space)?
-    }
-    fn dGeomSetConvex(
-        geom: GeomId, _planes: *const Real, plane_count: c_uint, points: *const Real, point_count: c_uint,
-        polygons: *const c_uint,
-    ) {
-        let geom = of_class(geom, class::CONVEX, "argument not a convex shape")?;
-        let shape = convex_by(points, point_count, polygons, plane_count)?;
-        reshape(geom, Ok(shape))?
-    }
 }

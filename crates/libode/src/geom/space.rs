@@ -1,7 +1,7 @@
 //! Spaces: what is in them, and which pairs may touch.
 
 use super::{GeomId, GeomRecord, class};
-use crate::fault::{Fault, Outcome, export};
+use crate::fault::{Fault, Outcome, export, export_calling};
 use crate::real::{In, Out, Real, f};
 use crate::record::Required;
 use crate::slab::Link;
@@ -359,7 +359,6 @@ export! {
         let order = axis_order_of(axis_order)?;
         create(class::SWEEP_AND_PRUNE_SPACE, Broad::SweepAndPrune(SweepAndPruneSpace::new(order)), parent)?
     }
-    fn dSpaceDestroy(space: GeomId) { get(space)?.destroy()? }
     fn dHashSpaceSetLevels(space: GeomId, min: c_int, max: c_int) {
         if min > max {
             return Err(Fault::user("must have minlevel <= maxlevel"));
@@ -398,7 +397,6 @@ export! {
         let space = get(space)?;
         geom.get()?.parent().is_some_and(|parent| core::ptr::eq(parent, space)).into()
     }
-    fn dSpaceClean(space: GeomId) { clean(get(space)?)? }
     fn dSpaceGetNumGeoms(space: GeomId) -> c_int {
         with(get(space)?, |contents| contents.broad().members().len())? as c_int
     }
@@ -407,4 +405,9 @@ export! {
         with(get(space)?, |contents| contents.member(index))?.ok_or(Fault::ARGUMENT)?.handle()
     }
     fn dSpaceGetClass(space: GeomId) -> c_int { get(space)?.class.get() }
+}
+
+export_calling! {
+    fn dSpaceDestroy(space: GeomId) { get(space)?.destroy()? }
+    fn dSpaceClean(space: GeomId) { clean(get(space)?)? }
 }

@@ -3,6 +3,7 @@
 //! The arrays stay the program's: they are read when the data are built, and again when the program says that it has
 //! changed them.
 
+use super::kept::Kept;
 use super::{GeomId, GeomRecord, class};
 use crate::fault::{Fault, Outcome, export, export_unless};
 use crate::mass::{MassPointer, store_checked};
@@ -39,7 +40,7 @@ struct Arrays {
 pub struct MeshRecord {
     tag: Tag,
     arrays: Cell<Option<Arrays>>,
-    mesh: RefCell<Option<TriMesh>>,
+    mesh: Kept<Option<TriMesh>>,
     /// Counts builds, so that geoms see that theirs is an old one.
     version: Cell<u64>,
     normals: Cell<*mut c_void>,
@@ -89,7 +90,7 @@ impl MeshRecord {
             unsafe { at.cast::<[u32; 3]>().read_unaligned() }
         });
         let mesh = TriMesh::new(vertices, triangles.collect()).map_err(|_| Fault::ARGUMENT)?;
-        *self.mesh.borrow_mut() = Some(mesh);
+        self.mesh.set(Some(mesh));
         self.version.set(self.version.get() + 1);
         Ok(())
     }
@@ -107,7 +108,7 @@ impl MeshRecord {
     }
 
     fn triangle_count(&self) -> usize {
-        self.mesh.borrow().as_ref().map_or(0, |mesh| mesh.triangles().len())
+        self.mesh.with(|mesh| mesh.as_ref().map_or(0, |mesh| mesh.triangles().len()))
     }
 
     /// Where the flags are: the program's own, or those of preprocessing.
@@ -170,8 +171,9 @@ impl GeomRecord {
             return;
         }
         let Some(data) = self.mesh.data.get().live() else { return };
-        if self.mesh.version.replace(data.version.get()) != data.version.get() {
-            self.shape.set(data.mesh.borrow().clone().map(Shape::from));
+        if self.mesh.version.get() != data.version.get() {
+            self.mesh.version.set(data.version.get());
+            self.shape.set(data.mesh.with(Option::clone).map(Shape::from));
         }
     }
 
@@ -237,7 +239,7 @@ fn preprocess(data: MeshId, requests: c_uint) -> Outcome<c_int> {
     }
     data.preprocessed.set(data.preprocessed.get() | requests);
     if requests & 1 != 0 {
-        let flags = data.mesh.borrow().as_ref().map(use_flags).unwrap_or_default();
+        let flags = data.mesh.with(|mesh| mesh.as_ref().map(use_flags)).unwrap_or_default();
         *data.flags.borrow_mut() = flags;
     }
     Ok(1)
@@ -261,7 +263,7 @@ export_unless! { "no-trimesh";
     fn dGeomTriMeshDataCreate() -> MeshId { MeshId::of(MeshRecord::pool().create()) }
     fn dGeomTriMeshDataDestroy(data: MeshId) {
         let data = data.get()?;
-        *data.mesh.borrow_mut() = None;
+        data.mesh.set(None);
         *data.flags.borrow_mut() = Vec::new();
         MeshRecord::pool().destroy(data)
     }
@@ -359,6 +361,7 @@ export_unless! { "no-trimesh";
         geom.mesh.tri.set(tri);
         geom.mesh.array.set(array);
         geom.mesh.ray.set(ray);
+        geom.refresh_mesh();
         handle
     }
     fn dGeomTriMeshSetData(geom: GeomId, data: MeshId) {
@@ -366,6 +369,7 @@ export_unless! { "no-trimesh";
         data.get()?;
         geom.mesh.data.set(data);
         geom.mesh.version.set(0);
+        geom.refresh_mesh();
         geom.moved()?
     }
     fn dGeomTriMeshGetData(geom: GeomId) -> MeshId { mesh_geom(geom)?.mesh.data.get() }
