@@ -1,8 +1,9 @@
 //! Contacts of geoms and pairs of spaces, as the program asks for them; boxes and segments by themselves.
 
 use super::classes::{Collider, collider};
+use super::mesh_choice::MeshChoice;
 use super::space::{Pairs, pairs_between, pairs_within};
-use super::{GeomId, GeomRecord, class};
+use super::{GeomId, GeomRecord};
 use crate::contact::ContactGeomRecord;
 use crate::fault::{Fault, Outcome, export, fence};
 use crate::real::{InMatrix, InVector, Out, OutVector, Real, mat3, padded, r, vector, vector3};
@@ -10,8 +11,7 @@ use crate::record::Required;
 use core::cell::RefCell;
 use core::ffi::{c_int, c_uint, c_void};
 use ferrode_collide::narrow::{closest_segment_points, collide_frames, cuboid_cuboid, cuboids_touch};
-use ferrode_collide::{CollideOptions, Contacts, Cuboid, Frame, GeomContact, Shape};
-use ferrode_math::Vec3;
+use ferrode_collide::{CollideOptions, Contacts, Cuboid, Frame, GeomContact};
 
 /// `dNearCallback`.
 type NearCallback = unsafe extern "C-unwind" fn(*mut c_void, GeomId, GeomId);
@@ -67,15 +67,21 @@ fn contacts_of(
         return from + by_program(a, b, (flags & !0xffff) | left as c_uint, target, from, collider, swapped);
     }
     let (Some((sa, fa)), Some((sb, fb))) = (a.solid(), b.solid()) else { return from };
-    let filter = Filter::of(sa, sb);
-    // A filter needs all contacts to choose from.
-    let max_contacts = if filter.is_some() { u16::MAX } else { left as u16 };
-    let options = CollideOptions { max_contacts, ..options };
+    let (mut fa, mut fb) = (fa, fb);
     let (view_a, view_b) = (sa.view_for(&fa, sb, &fb), sb.view_for(&fb, sa, &fa));
-    let (fa, fb) = (view_a.frame(fa), view_b.frame(fb));
+    let choice = MeshChoice::of(sa, &fa, sb, &fb);
+    // Hits are asked about one by one: all are needed to choose from.
+    let asks_hits = choice.as_ref().is_some_and(MeshChoice::asks_hits);
+    let max_contacts = if asks_hits { u16::MAX } else { left as u16 };
+    let options = CollideOptions { max_contacts, ..options };
     // In a static destructor the thread's memory may be gone.
     let mut found = FOUND.try_with(RefCell::take).unwrap_or_default();
     found.clear();
+    let (view_a, view_b) = match &choice {
+        Some(choice) => choice.views(view_a, view_b),
+        None => (view_a, view_b),
+    };
+    (fa, fb) = (view_a.frame(fa), view_b.frame(fb));
     view_a.with(sa, |sa| {
         view_b.with(sb, |sb| {
             if let (Some(sa), Some(sb)) = (sa, sb) {
@@ -83,8 +89,8 @@ fn contacts_of(
             }
         });
     });
-    if let Some(filter) = filter {
-        filter.apply(&mut found);
+    if let Some(choice) = choice {
+        choice.finish(&mut found);
     }
     let name = |geom: &'static GeomRecord, solid: &GeomRecord| {
         let inner =
@@ -129,78 +135,6 @@ fn by_program(
         }
     }
     count
-}
-
-/// The callbacks of a mesh that is asked about its triangles: one that meets a ball, box, capsule, cylinder or ray.
-struct Filter {
-    mesh: &'static GeomRecord,
-    other: &'static GeomRecord,
-    first: bool,
-}
-
-impl Filter {
-    fn of(a: &GeomRecord, b: &GeomRecord) -> Option<Self> {
-        let asks = |mesh: &GeomRecord, other: &GeomRecord| {
-            let has = mesh.mesh.tri.get().is_some()
-                || mesh.mesh.array.get().is_some()
-                || mesh.mesh.ray.get().is_some();
-            let kind = other.class.get();
-            let asked =
-                matches!(kind, class::SPHERE | class::BOX | class::CAPSULE | class::CYLINDER | class::RAY);
-            mesh.class.get() == class::TRIMESH && has && asked
-        };
-        let live = |geom: &GeomRecord| GeomId::from_address(core::ptr::from_ref(geom).addr()).live();
-        if asks(a, b) {
-            Some(Self { mesh: live(a)?, other: live(b)?, first: true })
-        } else if asks(b, a) {
-            Some(Self { mesh: live(b)?, other: live(a)?, first: false })
-        } else {
-            None
-        }
-    }
-
-    /// Keeps the contacts that the callbacks let stand.
-    fn apply(&self, found: &mut Vec<GeomContact>) {
-        let (mesh, other) = (GeomId::of(self.mesh), GeomId::of(self.other));
-        let side = |contact: &GeomContact| if self.first { contact.side1 } else { contact.side2 };
-        if let Some(array) = self.mesh.mesh.array.get() {
-            let mut triangles: Vec<c_int> = found.iter().map(side).collect();
-            triangles.dedup();
-            if !triangles.is_empty() {
-                // SAFETY: the program's own function, called as its header says.
-                unsafe { array(mesh, other, triangles.as_ptr(), triangles.len() as c_int) };
-            }
-        }
-        let is_ray = self.other.class.get() == class::RAY;
-        found.retain(|contact| {
-            let triangle = side(contact);
-            if is_ray && let Some(ray) = self.mesh.mesh.ray.get() {
-                let (u, v) = self.barycentrics(triangle, contact.point.position);
-                // SAFETY: as above.
-                if unsafe { ray(mesh, other, triangle, r(u), r(v)) } == 0 {
-                    return false;
-                }
-            }
-            // SAFETY: as above.
-            self.mesh.mesh.tri.get().is_none_or(|tri| unsafe { tri(mesh, other, triangle) } != 0)
-        });
-    }
-
-    /// Where in a triangle a point is: (1 - u - v) v0 + u v1 + v v2.
-    fn barycentrics(&self, triangle: c_int, point: Vec3) -> (f64, f64) {
-        let local = self.mesh.frame().point_to_local(point);
-        self.mesh.shape.with(|shape| match shape {
-            Some(Shape::TriMesh(mesh)) if (0..mesh.triangles().len() as c_int).contains(&triangle) => {
-                let [a, b, c] = mesh.corners(triangle.cast_unsigned());
-                let (e, f, p) = (b - a, c - a, local - a);
-                let (ee, ef, ff) = (e.dot(e), e.dot(f), f.dot(f));
-                let (pe, pf) = (p.dot(e), p.dot(f));
-                let k = 1.0 / (ee * ff - ef * ef);
-                ((ff * pe - ef * pf) * k, (ee * pf - ef * pe) * k)
-            }
-            _ => (0.0, 0.0),
-        })
-    }
 }
 
 fn collide(

@@ -8,6 +8,7 @@ mod collide;
 mod convex;
 mod heightfield;
 mod kept;
+mod mesh_choice;
 mod pose;
 mod shapes;
 mod space;

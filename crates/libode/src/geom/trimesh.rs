@@ -59,11 +59,11 @@ pub struct MeshGeom {
     pub tri: Cell<Option<TriCallback>>,
     pub array: Cell<Option<ArrayCallback>>,
     pub ray: Cell<Option<RayCallback>>,
-    merge: Cell<Option<MergeCallback>>,
+    pub merge: Cell<Option<MergeCallback>>,
     /// For spheres, boxes and capsules.
     coherence: Cell<[bool; 3]>,
     last_transform: Cell<[Real; 16]>,
-    merge_mode: Cell<c_int>,
+    pub merge_mode: Cell<c_int>,
 }
 
 impl MeshRecord {

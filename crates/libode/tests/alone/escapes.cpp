@@ -1,5 +1,5 @@
 /* Callbacks of every kind that don't come back: by longjmp, by exceptions, and by ending the thread's work. After each the
-   library works on. */
+   library works on. (Some of these leave libode in a state that it does not survive, so it is no measure here.) */
 #include <ode/ode.h>
 #include <csetjmp>
 #include <cstdarg>
@@ -18,8 +18,8 @@ static void out() {
     longjmp(place, 1);
 }
 
-template <typename Work> static void attempt(const char *name, Work work, int ways = 2) {
-    for (int way = 0; way < ways; way++) {
+template <typename Work> static void attempt(const char *name, Work work) {
+    for (int way = 0; way < 2; way++) {
         by_exception = way;
         leave = true;
         calls = 0;
@@ -171,11 +171,10 @@ int main() {
     dSetErrorHandler(0);
     dSetMessageHandler(0);
 
-    /* libode's geoms have C++ destructors, which no exception leaves. */
     attempt("destructor", [&] {
         dGeomID dying = dCreateGeom(kind);
         dGeomDestroy(dying);
-    }, 1);
+    });
     dGeomDestroy(mesh);
     dGeomDestroy(ray);
     dGeomDestroy(field);
