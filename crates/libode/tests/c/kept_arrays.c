@@ -1,5 +1,5 @@
 /* Arrays stay the program's: samples of a heightfield, a function's heights, corners of a polyhedron and of a mesh change
-   in place. tolerance: 2e-6, since libode's meshes are single precision. */
+   in place. tolerance: 2e-6 since libode's meshes are single precision. */
 #include "check.h"
 
 static double lift;

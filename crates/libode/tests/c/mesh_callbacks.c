@@ -1,4 +1,4 @@
-/* What a mesh's callbacks are asked, and what their answers lead to. tolerance: 2e-6, since libode's meshes are single
+/* What a mesh's callbacks are asked, and what their answers lead to. tolerance: 2e-6 since libode's meshes are single
    precision. */
 #include "check.h"
 
