@@ -183,3 +183,56 @@ fn simple_pairs_are_libodes() {
     println!("{replayed} cases, {cut} of them cut");
     assert!(replayed > 30 && 2 * cut < replayed, "{replayed} {cut}");
 }
+
+/// A torus about z, closed and outward.
+fn ring(radius: f64, tube: f64, around: u32, across: u32) -> TriMesh {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    let turn = |i: u32, n: u32| std::f64::consts::TAU * f64::from(i) / f64::from(n);
+    for i in 0..around {
+        let spoke = Quat::from_axis_angle(Vec3::Z, turn(i, around)).rotate(Vec3::X);
+        for j in 0..across {
+            let lift = Quat::from_axis_angle(Vec3::Y, -turn(j, across)).rotate(Vec3::X);
+            vertices.push(spoke * (radius + tube * lift.x) + Vec3::Z * (tube * lift.z));
+            let (i2, j2) = ((i + 1) % around, (j + 1) % across);
+            let corner = |i: u32, j: u32| i * across + j;
+            triangles.extend([
+                [corner(i, j), corner(i2, j), corner(i2, j2)],
+                [corner(i, j), corner(i2, j2), corner(i, j2)],
+            ]);
+        }
+    }
+    TriMesh::new(vertices, triangles).unwrap()
+}
+
+/// A long pole in the hole of a tilted ring: it overlaps the inside of the ring by a few millimetres, and is pushed by no more.
+#[test]
+fn a_pole_in_a_ring_is_pushed_to_the_side() {
+    let mesh = Shape::from(ring(0.45, 0.12, 24, 12));
+    let poles = [
+        Shape::from(Cylinder::new(0.12, 2.4).unwrap()),
+        Shape::from(Capsule::new(0.12, 2.4).unwrap()),
+        Shape::from(Cuboid::new(Vec3::new(0.24, 0.24, 2.4)).unwrap()),
+    ];
+    let (mut touching, mut deepest) = (0, 0.0_f64);
+    for step in 0..400 {
+        let s = f64::from(step);
+        let tilt = Quat::from_axis_angle(Vec3::new((0.7 * s).sin(), (0.7 * s).cos(), 0.0), 0.00075 * s);
+        let heading = 2.39996 * s;
+        let aside = Vec3::new(heading.cos(), heading.sin(), 0.0) * (0.19 + 0.00005 * s);
+        let place = Pose { position: aside + Vec3::Z * (0.8 * (0.31 * s).sin()), rotation: tilt };
+        for pole in &poles {
+            let mut found = Vec::new();
+            let still = (pole, &Pose::IDENTITY);
+            steady((&mesh, &place), still, CollideOptions::default(), &mut found);
+            touching += usize::from(!found.is_empty());
+            for c in &found {
+                // To the side, tilted by 0.3 rad with the ring and by up to a facet of 30°: sin 47° is 0.734.
+                assert!(c.point.normal.z.abs() < 0.75, "{step} {c:?}");
+                deepest = deepest.max(c.point.depth);
+            }
+        }
+    }
+    println!("{touching} touch, {deepest} deep at most");
+    // The box's corners are 0.17 m from its axis, 0.21 m from the middle of a hole of 0.33 m, and the tilt takes 0.02 m.
+    assert!(touching > 300 && deepest < 0.1, "{touching} {deepest}");
+}

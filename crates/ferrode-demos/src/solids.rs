@@ -1,5 +1,6 @@
-//! Points of solids.
+//! Points and triangles of solids.
 
+use core::f64::consts::TAU;
 use ferrode::Vec3;
 
 /// Corners of the five regular solids with a circumscribed sphere of radius 1: 4, 6, 8, 12 and 20 of them.
@@ -28,9 +29,27 @@ pub(crate) fn platonic() -> [Vec<Vec3>; 5] {
         .map(|points: Vec<Vec3>| points.into_iter().map(|p| p.normalized_or(Vec3::Z)).collect())
 }
 
+/// A torus about z, closed and outward: points, and triangles over them.
+pub(crate) fn torus(radius: f64, tube: f64, around: u32, across: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    let (mut points, mut triangles) = (Vec::new(), Vec::new());
+    for i in 0..around {
+        let (sin, cos) = crate::kit::sin_cos(TAU * f64::from(i) / f64::from(around));
+        for j in 0..across {
+            let (s, c) = crate::kit::sin_cos(TAU * f64::from(j) / f64::from(across));
+            let out = radius + tube * c;
+            points.push(Vec3::new(out * cos, out * sin, tube * s));
+            let (next_i, next_j) = ((i + 1) % around, (j + 1) % across);
+            let (a, b) = (i * across + j, next_i * across + j);
+            let (c, d) = (next_i * across + next_j, i * across + next_j);
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    (points, triangles)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::platonic;
+    use super::{platonic, torus};
 
     #[test]
     fn solids_are_regular() {
@@ -39,5 +58,14 @@ mod tests {
             let solid = ferrode::Convex::from_points(&points).unwrap();
             assert_eq!(solid.face_count(), faces);
         }
+    }
+
+    #[test]
+    fn the_torus_is_closed_and_outward() {
+        let (points, triangles) = torus(2.0, 0.5, 200, 100);
+        let mesh = ferrode::TriMesh::new(points, triangles).unwrap();
+        // 2 π² R r², less what chords cut off.
+        let exact = 2.0 * std::f64::consts::PI * std::f64::consts::PI * 2.0 * 0.25;
+        assert!((mesh.volume() - exact).abs() < 2e-3 * exact, "{} against {exact}", mesh.volume());
     }
 }

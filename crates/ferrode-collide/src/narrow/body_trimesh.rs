@@ -1,7 +1,10 @@
-use super::convex::touch;
+use super::convex::{Touch, touch};
+use super::manifold::add_manifold;
+use super::ray_trimesh::ray_triangle;
 use super::reduce::reduce;
 use super::support::Body;
 use super::triangle::{Facet, body_facet};
+use crate::space::Probe;
 use crate::{Contacts, Frame, GeomContact, Shape, TriMesh};
 use ferrode_math::{Aabb, Vec3};
 
@@ -40,6 +43,11 @@ pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: 
             }
         });
         drop_long_ways(&body, mesh, &mut all);
+        let found = all.len();
+        drop_beyond(mesh, &mut all);
+        if found > 0 && all.is_empty() {
+            least_touch(&body, mesh, &local, shape, &mut all);
+        }
     }
     reduce(out, body.reach());
     for c in out.added() {
@@ -47,6 +55,61 @@ pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: 
         c.point.normal = fm.vector_to_world(c.point.normal);
         // From midway to the body's own surface, as over a plane.
         c.point.position -= c.point.normal * (0.5 * c.point.depth);
+    }
+}
+
+/// Drops contacts with faces whose deep end is not below the surface: a pole in the hole of a ring ends before the plane of a
+/// triangle of the ring, and on the other side of the ring. Where a body is deeper than a triangle is large, what lies
+/// between its deep end and the triangle tells.
+fn drop_beyond(mesh: &TriMesh, out: &mut Contacts<'_>) {
+    let list = out.added();
+    let mut kept = 0;
+    for i in 0..list.len() {
+        let c = list[i];
+        let facet = mesh.facet(c.side2 as u32);
+        let deep = facet.is_some_and(|facet| {
+            c.point.normal.dot(facet.normal) > 1.0 - SAME && c.point.depth > facet.scale()
+        });
+        if !deep || !leaves(mesh, c.point.position, c.point.normal, c.point.depth) {
+            list[kept] = c;
+            kept += 1;
+        }
+    }
+    out.truncate(kept);
+}
+
+/// Whether another triangle lies across the way from a face down to the deep end of a contact; `middle` is midway.
+fn leaves(mesh: &TriMesh, middle: Vec3, normal: Vec3, depth: f64) -> bool {
+    let margin = 1e-6 * depth;
+    let (start, length) = (middle + normal * (0.5 * depth - margin), depth - 2.0 * margin);
+    let mut limit = length;
+    let mut crossed = false;
+    mesh.tree().seek(&Probe::ray(start, -normal), &mut limit, |i, limit| {
+        if ray_triangle(start, -normal, *limit, mesh.corners(i), mesh.normal(i)).is_some() {
+            crossed = true;
+            *limit = 0.0;
+        }
+    });
+    crossed
+}
+
+/// The contact of the triangle that the body leaves soonest, whatever its neighbours say: at a saddle of a surface no
+/// triangle has the direction in which the body leaves among its own.
+fn least_touch(body: &Body<'_>, mesh: &TriMesh, local: &Frame, shape: &Shape, out: &mut Contacts<'_>) {
+    let mut least: Option<(Touch, u32)> = None;
+    mesh.tree().query(&shape.aabb_in(local), |i| {
+        if mesh.normal(i).length_squared() > 0.0
+            && let Some(t) = touch(body, &Body::triangle(mesh.corners(i)))
+            && least.as_ref().is_none_or(|(best, of)| (t.depth, i) < (best.depth, *of))
+        {
+            least = Some((t, i));
+        }
+    });
+    let Some((t, i)) = least else { return };
+    let first = out.len();
+    add_manifold(body, &Body::triangle(mesh.corners(i)), &t, Vec3::ZERO, out);
+    for c in &mut out.added()[first..] {
+        c.side2 = i as i32;
     }
 }
 

@@ -15,6 +15,8 @@ pub(super) const DEMO: Demo = Demo {
 
 fn build() -> Result<Play, Failure> {
     let mut world = ground(Stepper::Quick)?;
+    // Contacts that rest a little inside each other do not come and go.
+    world.set_contact_surface_layer(1e-3)?;
     let_sleep(&mut world)?;
     for layer in 0..4 {
         for (i, points) in solids::platonic().iter().enumerate() {

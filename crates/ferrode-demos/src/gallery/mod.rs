@@ -24,6 +24,7 @@ mod hinge;
 mod hinge2;
 mod lmotor;
 mod motors;
+mod moving_mesh;
 mod newtons_cradle;
 mod pendulum_wave;
 mod piston;
@@ -78,7 +79,7 @@ macro_rules! gallery {
 }
 
 gallery! {
-    box_stack, pyramid, shapes, buggy, chain, convex, heightfield, wall_crash, cards, cylinders, hinge, slider,
+    box_stack, pyramid, shapes, buggy, chain, convex, moving_mesh, heightfield, wall_crash, cards, cylinders, hinge, slider,
     universal, hinge2, prismatic_rotoide, prismatic_universal, piston, double_ball, double_hinge, transmission, motors, amotor,
     lmotor, feedback, friction, rolling_friction, gyroscope, platforms, plane2d, tracks, conveyor, basket, space_stress, steppers,
     ragdolls, robot, newtons_cradle, four_bar, dzhanibekov, dominoes, walker, trebuchet, pendulum_wave, bounce, balance, table,

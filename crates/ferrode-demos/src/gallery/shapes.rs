@@ -25,6 +25,8 @@ fn build() -> Result<Play, Failure> {
         spinning: 0.01,
         ..Material::default()
     })?;
+    // Contacts that rest a little inside each other do not come and go.
+    world.set_contact_surface_layer(1e-3)?;
     let_sleep(&mut world)?;
     for side in [-1.0, 1.0] {
         add_wall(&mut world, at(0.1, 2.0 * TRAY, 0.8), Pose::from_position(at(side * TRAY, 0.0, 0.4)))?;
