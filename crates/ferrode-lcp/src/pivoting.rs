@@ -194,6 +194,7 @@ pub fn solve_pivoting(
             work: workspace,
             report: PivotingReport::default(),
             largest: 0.0,
+            bounded: true,
             pass: Pass::Own,
         }
         .run()
@@ -245,6 +246,8 @@ struct Solve<'a, 'b> {
     report: PivotingReport,
     /// The largest force of the last solution.
     largest: f64,
+    /// Whether any row has a bound.
+    bounded: bool,
     /// Whether the problem is solved as it is or with the CFM that rows were raised to.
     pass: Pass,
 }
@@ -257,6 +260,8 @@ impl Solve<'_, '_> {
         self.report.factor_blocks = self.shape.blocks();
         let friction = self.p.findex[..m].iter().any(|f| *f >= 0);
         self.bounds_without_friction();
+        self.bounded =
+            (0..m).any(|row| self.work.lo[row] > f64::NEG_INFINITY || self.work.hi[row] < f64::INFINITY);
         if friction {
             self.phase(0);
             self.freeze_friction();
@@ -459,18 +464,25 @@ impl Solve<'_, '_> {
             }
         }
         self.largest = system.solve(p.blocks, p.jacobian, state, shape);
-        system.product(p.blocks, p.jacobian);
+        if self.bounded {
+            system.product(p.blocks, p.jacobian);
+        }
     }
 
     /// Refines the solution of the present states.
     fn refine_set(&mut self) {
         let Self { p, shape, work, pass, .. } = self;
         work.system.refine_roughly(p.blocks, p.jacobian, &work.state, shape, *pass);
-        work.system.product(p.blocks, p.jacobian);
+        if self.bounded {
+            work.system.product(p.blocks, p.jacobian);
+        }
     }
 
     /// Finds the rows whose state is wrong by more than so many parts of the largest force, and proposes better ones. Returns their number.
     fn propose(&mut self, tolerance: f64) -> usize {
+        if !self.bounded {
+            return 0;
+        }
         let tolerance = tolerance * (1.0 + self.largest);
         let PivotingWorkspace { system: s, state, proposed, lo, hi, .. } = &mut *self.work;
         proposed.clone_from(state);

@@ -16,7 +16,7 @@ impl Solve<'_, '_> {
         self.work.accepted.clone_from(&self.work.state);
         self.work.needed.clear();
         self.work.needed.resize(self.work.state.len(), false);
-        if !self.put_at_bounds() {
+        if self.bounded && !self.put_at_bounds() {
             // They would not go there.
             self.work.state.clone_from(&self.work.accepted);
             self.solve_set();

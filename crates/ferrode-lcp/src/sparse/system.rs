@@ -88,20 +88,17 @@ impl System {
         self.sigma.extend_from_slice(&sigma[..m]);
         self.rhs.clear();
         self.rhs.extend_from_slice(&rhs[..m]);
-        for v in [&mut self.used_sigma, &mut self.inverse_sigma, &mut self.diagonal] {
-            v.clear();
+        for v in [&mut self.used_sigma, &mut self.inverse_sigma, &mut self.diagonal, &mut self.weight] {
+            v.resize(m, 0.0);
         }
         self.raised = false;
-        self.weight.clear();
-        for (row, sigma) in jacobian.iter().zip(sigma) {
-            let diagonal = kernels::dot(&row[0], &row[0]) + kernels::dot(&row[1], &row[1]) + sigma;
-            let least = LEAST_SIGMA * diagonal;
-            let used = if *sigma < least { least } else { *sigma };
-            self.raised |= used != *sigma;
-            self.diagonal.push(diagonal);
-            self.used_sigma.push(used);
-            self.weight.push(0.0);
-            self.inverse_sigma.push(if used > 0.0 { 1.0 / used } else { 0.0 });
+        let out = self.diagonal.iter_mut().zip(&mut self.used_sigma).zip(&mut self.inverse_sigma);
+        for ((row, sigma), ((diagonal, used), inverse)) in jacobian.iter().zip(&self.sigma).zip(out) {
+            *diagonal = kernels::dot(&row[0], &row[0]) + kernels::dot(&row[1], &row[1]) + sigma;
+            let least = LEAST_SIGMA * *diagonal;
+            *used = if *sigma < least { least } else { *sigma };
+            self.raised |= *used != *sigma;
+            *inverse = if *used > 0.0 { 1.0 / *used } else { 0.0 };
         }
         self.factor.reset(shape);
     }
@@ -151,7 +148,7 @@ impl System {
                 add_to_bodies(&mut self.dy, block, &a, &b);
             }
         }
-        self.solve_factored(blocks, jacobian, shape);
+        self.solve_factored(blocks, jacobian, shape, false);
         for (block, place) in blocks.iter().zip(&shape.places) {
             let [a, b] = of_bodies(&self.dy, block);
             for row in block.range() {
@@ -267,8 +264,14 @@ impl System {
     }
 
     /// Solves with the factor: `dy` holds the right-hand side of the bodies and becomes their part of the solution, `dlambda` that of
-    /// the rows with unknowns of their own.
-    fn solve_factored(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
+    /// the rows with unknowns of their own. If `at_rest`, the bodies' right-hand side is zero.
+    fn solve_factored(
+        &mut self,
+        blocks: &[RowBlock],
+        jacobian: &[ScaledRow],
+        shape: &Symbolic,
+        at_rest: bool,
+    ) {
         let z = &mut self.z;
         for (dy, column) in self.dy.iter().zip(&shape.body_column) {
             if *column != NONE {
@@ -282,12 +285,21 @@ impl System {
             }
             let own = place.own as usize;
             let z = &mut z[shape.offset[own] as usize..shape.offset[own + 1] as usize];
-            z.fill(0.0);
-            let [a, b] = light_bodies(&self.dy, block, place);
-            for (z, row) in z.iter_mut().zip(block.range()) {
-                if self.weight[row] != 0.0 {
-                    let j = &jacobian[row];
-                    *z = self.dlambda[row] - (kernels::dot(&j[0], &a) + kernels::dot(&j[1], &b));
+            let range = block.range();
+            let (force, weight) = (&self.dlambda[range.clone()], &self.weight[range.clone()]);
+            z[force.len()..].fill(0.0);
+            for (z, (force, weight)) in z.iter_mut().zip(force.iter().zip(weight)) {
+                *z = if *weight == 0.0 { 0.0 } else { *force };
+            }
+            if at_rest {
+                continue;
+            }
+            for (s, body) in light_sides(block, place) {
+                let dy = &self.dy[body];
+                for (z, (row, weight)) in z.iter_mut().zip(jacobian[range.clone()].iter().zip(weight)) {
+                    if *weight != 0.0 {
+                        *z -= kernels::dot(&row[s], dy);
+                    }
                 }
             }
         }
@@ -303,15 +315,17 @@ impl System {
                 continue;
             }
             let z = &z[shape.offset[place.own as usize] as usize..];
-            let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
-            for (z, row) in z.iter().zip(block.range()) {
-                let force = if self.weight[row] == 0.0 { 0.0 } else { -z };
-                self.dlambda[row] = force;
-                kernels::add_scaled(&mut a, force, &jacobian[row][0]);
-                kernels::add_scaled(&mut b, force, &jacobian[row][1]);
+            let range = block.range();
+            let (force, weight) = (&mut self.dlambda[range.clone()], &self.weight[range.clone()]);
+            for (z, (force, weight)) in z.iter().zip(force.iter_mut().zip(weight)) {
+                *force = if *weight == 0.0 { 0.0 } else { -z };
             }
             for (s, body) in light_sides(block, place) {
-                kernels::add_scaled(&mut self.dy[body], 1.0, if s == 0 { &a } else { &b });
+                let mut sum = [0.0; 6];
+                for (row, force) in jacobian[range.clone()].iter().zip(force.iter()) {
+                    kernels::add_scaled(&mut sum, *force, &row[s]);
+                }
+                kernels::add_scaled(&mut self.dy[body], 1.0, &sum);
             }
         }
     }
@@ -413,20 +427,30 @@ impl System {
         for (dy, y) in self.dy.iter_mut().zip(&self.y) {
             *dy = y.map(|y| -y);
         }
+        let mut at_rest = first;
         for (block, place) in blocks.iter().zip(&shape.places) {
+            let range = block.range();
+            let rows = &jacobian[range.clone()];
+            let (lambda, state) = (&self.lambda[range.clone()], &state[range.clone()]);
+            let (sigma, rhs) = (&sigma[range.clone()], &self.rhs[range.clone()]);
+            if place.own != NONE && first && state.iter().all(|s| *s == RowState::Free) {
+                self.dlambda[range].copy_from_slice(rhs);
+                continue;
+            }
+            at_rest = false;
+            let (error, own) = (&mut self.error[range.clone()], &mut self.dlambda[range.clone()]);
+            let inverse_sigma = &self.inverse_sigma[range];
             let [ya, yb] = if first { [[0.0; 6]; 2] } else { of_bodies(&self.y, block) };
             let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
-            for row in block.range() {
-                let j = &jacobian[row];
-                let mut force = self.lambda[row];
-                if state[row] == RowState::Free {
+            for (i, j) in rows.iter().enumerate() {
+                let mut force = lambda[i];
+                if state[i] == RowState::Free {
                     let jy = if first { 0.0 } else { kernels::dot(&j[0], &ya) + kernels::dot(&j[1], &yb) };
-                    let error = self.rhs[row] - jy - sigma[row] * force;
-                    self.error[row] = error;
+                    error[i] = rhs[i] - jy - sigma[i] * force;
                     if place.own == NONE {
-                        force += error * self.inverse_sigma[row];
+                        force += error[i] * inverse_sigma[i];
                     } else {
-                        self.dlambda[row] = error;
+                        own[i] = error[i];
                     }
                 }
                 kernels::add_scaled(&mut a, force, &j[0]);
@@ -434,7 +458,7 @@ impl System {
             }
             add_to_bodies(&mut self.dy, block, &a, &b);
         }
-        self.solve_factored(blocks, jacobian, shape);
+        self.solve_factored(blocks, jacobian, shape, at_rest);
         for (block, place) in blocks.iter().zip(&shape.places) {
             if place.own == NONE {
                 let [da, db] = of_bodies(&self.dy, block);
@@ -518,22 +542,24 @@ fn light_sides(block: &RowBlock, place: &Place) -> impl Iterator<Item = (usize, 
         .map(|(s, (body, _))| (s, body as usize))
 }
 
-/// What `y` holds for those bodies of a joint that have no column, else 0.
-#[inline(always)]
-fn light_bodies(y: &[Six], block: &RowBlock, place: &Place) -> [Six; 2] {
-    let mut out = [[0.0; 6]; 2];
-    light_sides(block, place).for_each(|(s, body)| out[s] = y[body]);
-    out
-}
-
 /// Rows with their weights, seen from one of their two bodies.
 type Side<'a> = (&'a [ScaledRow], &'a [f64], usize);
 
 /// `out -= A B^T` for rows `A` and `B` of the same body, without those that have no weight; `out` has `H` rows.
 #[inline(always)]
-fn sub_product<const H: usize>(out: &mut [f64], (a, a_weight, s): Side<'_>, (b, b_weight, t): Side<'_>) {
-    let mut transposed = [[0.0; H]; 6];
-    for (r, (row, weight)) in a.iter().zip(a_weight).enumerate() {
+fn sub_product<const H: usize>(out: &mut [f64], a: Side<'_>, b: Side<'_>) {
+    // Three rows fill two pairs of lanes.
+    if H == 3 { sub_product_in::<3, 4>(out, a, b) } else { sub_product_in::<6, 6>(out, a, b) }
+}
+
+#[inline(always)]
+fn sub_product_in<const H: usize, const W: usize>(
+    out: &mut [f64],
+    (a, a_weight, s): Side<'_>,
+    (b, b_weight, t): Side<'_>,
+) {
+    let mut transposed = [[0.0; W]; 6];
+    for (r, (row, weight)) in a.iter().zip(a_weight).enumerate().take(H) {
         if *weight != 0.0 {
             for q in 0..6 {
                 transposed[q][r] = row[s][q];
@@ -542,14 +568,14 @@ fn sub_product<const H: usize>(out: &mut [f64], (a, a_weight, s): Side<'_>, (b, 
     }
     for (out, (row, weight)) in out.chunks_exact_mut(H).zip(b.iter().zip(b_weight)) {
         if *weight != 0.0 {
-            let mut sum = [0.0; H];
-            for q in 0..6 {
-                for r in 0..H {
-                    sum[r] += transposed[q][r] * row[t][q];
+            let mut sum = [0.0; W];
+            for (column, x) in transposed.iter().zip(&row[t]) {
+                for (sum, a) in sum.iter_mut().zip(column) {
+                    *sum += a * x;
                 }
             }
-            for r in 0..H {
-                out[r] -= sum[r];
+            for (out, sum) in out.iter_mut().zip(sum) {
+                *out -= sum;
             }
         }
     }

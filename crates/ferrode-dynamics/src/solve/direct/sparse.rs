@@ -128,8 +128,8 @@ impl Workspace {
         self.jacobian.clear();
         for span in &island.spans {
             let movable = |place: u32| {
-                let body = island.bodies.get(place as usize);
-                body.is_some_and(|b| b.inv_mass != 0.0 || b.inv_inertia != Mat3::ZERO)
+                let scale = self.scale.get(place as usize);
+                scale.is_some_and(|s| s.linear != 0.0 || s.angular != [0.0; 6])
             };
             let bodies = span.bodies.map(|place| if movable(place) { place } else { NO_SPARSE_BODY });
             self.blocks.push(RowBlock { bodies, first: span.first as u32, count: span.count.rows as u32 });
@@ -174,6 +174,9 @@ impl Workspace {
 /// What names the rows of a span from step to step: the joint, or for a contact, which programs make anew each step, the bodies and
 /// the point in the first one's frame. None if none of the rows has a bound.
 fn key(island: &Island, span: &JointSpan) -> Option<(Key, Vec3)> {
+    if span.count.unbounded == span.count.rows {
+        return None;
+    }
     let rows = &island.rows[span.first..span.first + span.count.rows];
     if rows.iter().all(|row| row.lo == f64::NEG_INFINITY && row.hi == f64::INFINITY) {
         return None;
