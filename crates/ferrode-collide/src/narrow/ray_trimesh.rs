@@ -37,6 +37,7 @@ pub fn ray_trimesh(ray: &Ray, fr: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut 
 ///
 /// The signs of the volumes that the ray spans with the edges decide; neighbours compute the same volume for their
 /// common edge, so that no ray slips between them.
+#[inline(always)]
 pub(super) fn ray_triangle(
     start: Vec3,
     direction: Vec3,
