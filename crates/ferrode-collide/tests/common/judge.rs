@@ -64,21 +64,47 @@ impl Surface {
         near.any(|t| normal(t).dot(p - t[0]) <= NEAR)
     }
 
-    /// Whether the surface goes on beyond triangle `i`, where that is furthest along `m` or where the contact is, further
-    /// along `m`: then `m` is no normal that the surface has there.
-    fn rises(&self, i: usize, m: Vec3, p: Vec3) -> bool {
-        let level = self.triangles[i].map(|v| m.dot(v)).into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let at = |q: Vec3, t: &[Vec3; 3]| {
-            distance(t, q) < NEAR && t.iter().any(|v| m.dot(*v - q) > NEAR)
+    /// Whether `m` is a normal of the surface where triangle `i` bears a contact: at `place` if that is on it, else where the
+    /// triangle is furthest along `m`. Normals there are those between the normals of all triangles that meet.
+    fn has_normal(&self, i: usize, m: Vec3, place: Vec3) -> bool {
+        let own = &self.triangles[i];
+        let at = if distance(own, place) < NEAR {
+            place
+        } else {
+            let level = own.map(|v| m.dot(v)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let far: Vec<Vec3> = own.iter().copied().filter(|v| m.dot(*v) > level - 1e-6).collect();
+            far.iter().fold(Vec3::ZERO, |s, v| s + *v) * (1.0 / far.len() as f64)
         };
-        let furthest = self.triangles[i].iter().filter(|v| m.dot(**v) > level - 1e-6);
-        let others = || self.triangles.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, t)| t);
-        furthest.clone().all(|v| others().any(|t| at(*v, t))) && furthest.count() > 0
-            || distance(&self.triangles[i], p) < NEAR && others().any(|t| at(p, t))
+        let meet: Vec<Vec3> =
+            self.triangles.iter().filter(|t| distance(t, at) < NEAR).map(normal).collect();
+        is_between(m, &meet)
     }
 
-    fn normal(&self, i: usize) -> Vec3 {
-        normal(&self.triangles[i])
+    /// Whether the surface goes on, flat or rising, further along `m` beside a point.
+    fn rises_at(&self, m: Vec3, p: Vec3) -> bool {
+        (0..self.triangles.len()).any(|i| distance(&self.triangles[i], p) < NEAR && {
+            let own = &self.triangles[i];
+            let n = normal(own);
+            self.triangles.iter().enumerate().any(|(j, t)| {
+                j != i
+                    && distance(t, p) < NEAR
+                    && t.iter().any(|v| m.dot(*v - p) > NEAR && n.dot(*v - own[0]) > -NEAR)
+                    && own.iter().filter(|v| t.iter().any(|w| (*w - **v).length() < NEAR)).count() == 2
+            })
+        })
+    }
+
+    /// How far along `d` a ray meets triangles, from either side, in order.
+    pub fn hits(&self, from: Vec3, d: Vec3, length: f64) -> Vec<f64> {
+        let hit = |t: &[Vec3; 3]| {
+            let n = normal(t);
+            let alpha = n.dot(t[0] - from) / n.dot(d);
+            let inside = alpha.is_finite() && distance(t, from + d * alpha) < 1e-7;
+            (inside && (-1e-9..=length + 1e-9).contains(&alpha)).then_some(alpha)
+        };
+        let mut hits: Vec<_> = self.triangles.iter().filter_map(hit).collect();
+        hits.sort_by(f64::total_cmp);
+        hits
     }
 
     /// How far along `d` a ray meets the surface, and whether it leaves through a back.
@@ -98,20 +124,40 @@ fn normal(t: &[Vec3; 3]) -> Vec3 {
     (t[1] - t[0]).cross(t[2] - t[0]).normalized().unwrap_or(Vec3::ZERO)
 }
 
-/// Distance of a point from a triangle, by projecting to its plane, its sides and its corners.
-fn distance(t: &[Vec3; 3], p: Vec3) -> f64 {
+/// Whether a unit vector is a sum of the given ones with weights that are not negative: the residual of such a sum, made
+/// least weight by weight, is nothing.
+fn is_between(m: Vec3, of: &[Vec3]) -> bool {
+    let mut weights = vec![0.0; of.len()];
+    let mut rest = m;
+    for _ in 0..500 {
+        for (w, n) in weights.iter_mut().zip(of) {
+            let next = f64::max(0.0, *w + rest.dot(*n));
+            rest -= *n * (next - *w);
+            *w = next;
+        }
+    }
+    rest.length() < 1e-3
+}
+
+/// The point of a triangle nearest to another, by projecting to its plane, its sides and its corners.
+fn nearest(t: &[Vec3; 3], p: Vec3) -> Vec3 {
     let n = normal(t);
     let inside = (0..3).all(|e| (t[(e + 1) % 3] - t[e]).cross(p - t[e]).dot(n) >= 0.0);
     if inside {
-        return n.dot(p - t[0]).abs();
+        return p - n * n.dot(p - t[0]);
     }
+    let on_side = |e: usize| {
+        let side = t[(e + 1) % 3] - t[e];
+        t[e] + side * (side.dot(p - t[e]) / side.length_squared()).clamp(0.0, 1.0)
+    };
     (0..3)
-        .map(|e| {
-            let side = t[(e + 1) % 3] - t[e];
-            let s = (side.dot(p - t[e]) / side.length_squared()).clamp(0.0, 1.0);
-            (p - (t[e] + side * s)).length()
-        })
-        .fold(f64::INFINITY, f64::min)
+        .map(on_side)
+        .min_by(|x, y| (*x - p).length_squared().total_cmp(&(*y - p).length_squared()))
+        .unwrap()
+}
+
+fn distance(t: &[Vec3; 3], p: Vec3) -> f64 {
+    (nearest(t, p) - p).length()
 }
 
 /// The least and greatest coordinate of a shape along a direction.
@@ -144,16 +190,29 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Why a contact contradicts the geometry; `None` if nothing speaks against it. `sides` are the triangles it names.
-    pub fn fault(&self, c: &GeomContact, sides: [i64; 2]) -> Option<&'static str> {
+    /// Why a contact contradicts the geometry; `None` if nothing speaks against it. It is one of
+    /// `list`, which has the triangles that they name. Of our own contacts only what needs no opinion is asked: unit normals,
+    /// points within the bodies, lengths of ways out.
+    pub fn fault(&self, list: &[(GeomContact, [i64; 2])], c: usize, own: bool) -> Option<&'static str> {
+        let (c, sides) = &list[c];
         let (p, n, depth) = (c.point.position, c.point.normal, c.point.depth);
         if !(n.length() - 1.0).abs().lt(&1e-6) || !depth.is_finite() || !p.is_finite() {
             return Some("no unit normal");
         }
         let into = [n, -n];
+        let same = |k: &&(GeomContact, [i64; 2])| k.0.point.normal.dot(n) > 1.0 - 1e-6 && k.0 != *c;
+        let is_deepest = !list.iter().filter(same).any(|k| k.0.point.depth > depth + NEAR);
+        // A rule decides on all contacts with a triangle at once, by the deepest.
+        let (place, _) = list
+            .iter()
+            .filter(|k| k.1 == *sides && k.0.point.normal.dot(n) > 1.0 - 1e-6)
+            .map(|k| (k.0.point.position, k.0.point.depth))
+            .fold((p, depth), |a, b| if b.1 > a.1 { b } else { a });
         // The point lies within either solid, or as far from it as the contact is deep.
         for k in 0..2 {
-            if self.outside(k, p) > depth + NEAR {
+            // The cap of a cylinder is an octagon about its circle.
+            let octagon = if let Shape::Cylinder(s) = self.shapes[k] { 0.083 * s.radius() } else { 0.0 };
+            if self.outside(k, p) > depth + NEAR + octagon {
                 return Some("the point is beside a body");
             }
         }
@@ -164,39 +223,78 @@ impl<'a> Judge<'a> {
             if let Ok(i) = usize::try_from(sides[k])
                 && !convex
                 && !surface.is_field
+                && self.surfaces[1 - k].is_none()
+                && !own
             {
-                if m.dot(surface.normal(i)) < -1e-6 {
-                    return Some("the normal points into the triangle");
-                }
-                if self.surfaces[1 - k].is_none() && surface.rises(i, m, p) {
-                    return Some("the surface rises beyond the triangle");
+                if !surface.has_normal(i, m, place) {
+                    return Some("the surface has no such normal there");
                 }
             }
             // Of two surfaces: the point of the one that is inside the other.
             if self.surfaces[1 - k].is_some() && !surface.is_field && depth > NEAR {
                 let other = self.surfaces[1 - k].as_ref().unwrap();
                 if other.is_field {
-                    if sides == [-1, -1] && other.distance(p) < NEAR {
+                    if *sides == [-1, -1] && other.distance(p) < NEAR {
                         // A corner of the field: down out of the mesh.
-                        return match surface.ray(p, m * -1.0) {
+                        return match surface.ray(p, m) {
                             Some((way, true)) if (way - depth).abs() < NEAR => None,
                             _ => Some("the way out of the mesh has another length"),
                         };
                     }
                 } else if surface.distance(p) > NEAR && surface.distance(p) < 0.5 * depth {
                     return Some("the surface is less than half as far elsewhere");
+                } else if !own && other.distance(p) < NEAR && other.rises_at(m * -1.0, p) {
+                    return Some("the mesh goes on deeper beside the point");
                 }
             }
-            if convex && !surface.is_field && depth > NEAR {
-                // Depth is what the body reaches below some triangle along the normal.
-                let low = extent(self.shapes[1 - k], self.frames[1 - k], m).0;
-                let fits = |t: &[Vec3; 3]| {
-                    let high = t.map(|v| m.dot(v)).into_iter().fold(f64::NEG_INFINITY, f64::max);
-                    (high - low - depth).abs() < NEAR
-                };
-                if !surface.triangles.iter().any(fits) {
-                    return Some("the depth is no triangle's along the normal");
+            // libode names no triangles of convex bodies' contacts: any near will do.
+            if convex && !own && !surface.is_field && depth > NEAR {
+                if let Some(fault) = self.convex_fault(1 - k, surface, c, m, is_deepest) {
+                    return Some(fault);
                 }
+            }
+        }
+        None
+    }
+
+    fn convex_fault(
+        &self,
+        body: usize,
+        surface: &Surface,
+        c: &GeomContact,
+        m: Vec3,
+        is_deepest: bool,
+    ) -> Option<&'static str> {
+        let (p, depth) = (c.point.position, c.point.depth);
+        let near = || surface.triangles.iter().enumerate().filter(|(_, t)| distance(t, p) < depth + NEAR);
+        if !near().any(|(i, t)| surface.has_normal(i, m, nearest(t, p))) {
+            return Some("the surface has no such normal there");
+        }
+        // Depth is what the body reaches below some triangle along the normal.
+        let low = extent(self.shapes[body], self.frames[body], m).0;
+        let fits = |t: &[Vec3; 3]| {
+            let high = t.map(|v| m.dot(v)).into_iter().fold(f64::NEG_INFINITY, f64::max);
+            (high - low - depth).abs() < NEAR
+        };
+        if is_deepest && !near().any(|(_, t)| fits(t)) {
+            return Some("the depth is no triangle's along the normal");
+        }
+        // How far the body reaches below the surface at the point itself.
+        let inside = |t: f64| point_depth(self.shapes[body], self.frames[body], p - m * t).is_some_and(|d| d > 0.0);
+        if inside(0.0) {
+            let (mut lo, mut hi) = (0.0, 10.0);
+            for _ in 0..60 {
+                let middle = 0.5 * (lo + hi);
+                if inside(middle) { lo = middle } else { hi = middle }
+            }
+            let up = |t: &[Vec3; 3]| {
+                let n = normal(t);
+                let way = n.dot(t[0] - p) / n.dot(m);
+                (distance(t, p + m * way) < NEAR).then_some(way)
+            };
+            let ways: Vec<f64> = near().filter_map(|(_, t)| up(t)).filter(|w| w.abs() <= depth + NEAR).collect();
+            if !ways.is_empty() && ways.iter().all(|w| (w + lo - depth).abs() > 1e-3) {
+                return Some("the bodies overlap by another length at the point");
             }
         }
         None

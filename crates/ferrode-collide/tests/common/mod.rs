@@ -1,6 +1,8 @@
 //! Reading recorded cases.
 #![allow(dead_code)]
 
+pub mod judge;
+
 use ferrode_collide::*;
 use ferrode_math::{Mat3, Vec3, rotation};
 use serde_json::Value;
