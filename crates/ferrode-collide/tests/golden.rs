@@ -90,7 +90,7 @@ fn closed_form_pairs_are_libodes() {
         }
     }
     println!("{replayed} cases, {ties} with another order of corners, {repaired} repaired");
-    assert!(replayed > 300, "{replayed}");
+    assert!(replayed > 150, "{replayed}");
     assert!(ties * 100 <= replayed, "{ties} of {replayed}");
 }
 
@@ -228,7 +228,7 @@ fn rays_hit_polyhedra_where_they_should() {
             assert!((normal - vector(&truth["normal"])).abs_max() < TOLERANCE, "{case}\n{got:?}");
         }
     }
-    assert!(replayed >= 10, "{replayed}");
+    assert!(replayed >= 6, "{replayed}");
 }
 
 /// Depths of points, but for those outside a box, where libode 0.16.2 errs and later versions give the distance.

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Record, contacts, number, vector};
-use ferrode_collide::narrow::collide_frames;
+use ferrode_collide::narrow::{ContactMerge, collide_frames};
 use ferrode_collide::{CollideOptions, Frame, GeomContact, Shape};
 use ferrode_math::Mat3;
 use serde_json::Value;
@@ -49,39 +49,57 @@ fn rays_on_meshes_heed_their_options() {
         cases += 1;
         if as_sets(&got, &want, 1e-4) {
             agree += 1;
-        } else {
-            // The first contact that libode comes upon need not be the nearest; ours is.
-            let first = ray.first_contact && got.len() == 1 && want.len() == 1;
-            assert!(first && got[0].point.depth < want[0].point.depth + 1e-4, "{case}\n{got:?}");
+            continue;
         }
+        // The first contact that libode comes upon need not be the nearest; ours is, of all that a ray hits without that
+        // option, and libode's is one of them.
+        let mut all = ray;
+        (all.first_contact, all.closest_hit) = (false, false);
+        let hits = collide(&(all.into(), a.1), &b, case);
+        let depth = |c: &GeomContact| c.point.depth;
+        let nearest = hits.iter().map(depth).fold(f64::INFINITY, f64::min);
+        assert!(ray.first_contact && got.len() == 1 && want.len() == 1, "{case}\n{got:?}");
+        assert!(
+            (depth(&got[0]) - nearest).abs() < 1e-9 && nearest < depth(&want[0]) - 1e-4,
+            "{case}\n{got:?}"
+        );
+        assert!(hits.iter().any(|h| near(h, &want[0], 1e-4)), "{case}\n{hits:?}");
     }
-    println!("{agree} of {cases}");
-    assert!(cases > 0 && agree * 10 >= cases * 8, "{agree} of {cases}");
+    println!("{agree} of {cases}, the others nearer");
+    assert!(cases > 0 && agree * 10 >= cases * 7, "{agree} of {cases}");
 }
 
+/// Balls on meshes in each of the modes of merging.
 #[test]
-fn balls_on_meshes_are_those_without_merging() {
+fn balls_on_meshes_are_merged_as_asked() {
     let record = Record::open(FILES);
     let (mut cases, mut agree) = ([0; 4], [0; 4]);
     for case in record.list("sphere_trimesh_merge") {
         let (a, b) = (record.geom(&case["a"]).unwrap(), record.geom(&case["b"]).unwrap());
         let mode = case["merge"].as_u64().unwrap() as usize;
+        let merge = [ContactMerge::None, ContactMerge::None, ContactMerge::Normals, ContactMerge::Full][mode];
+        let Shape::TriMesh(mesh) = a.0 else { panic!("{case}") };
+        let merged = |merge| (Shape::from(mesh.clone().with_sphere_merge(merge)), a.1);
         cases[mode] += 1;
-        let (got, want) = (collide(&a, &b, case), contacts(case));
-        let same = as_sets(&got, &want, 1e-4);
-        agree[mode] += usize::from(same);
+        let (got, want) = (collide(&merged(merge), &b, case), contacts(case));
+        if as_sets(&got, &want, 1e-4) {
+            agree[mode] += 1;
+            continue;
+        }
+        // No room for all: libode merges the first of its tree, here the deepest and most different stay. Without merging
+        // libode's are among all of ours.
         let room = case["flags"].as_u64().unwrap() as usize;
-        if mode <= 1 && !same {
-            // No room for all: libode keeps the first of its tree, here the deepest and most different stay. Libode's are
-            // among all of ours.
-            let mut all = Vec::new();
-            collide_frames((&a.0, &a.1), (&b.0, &b.1), CollideOptions::default(), &mut all);
-            assert!(want.len() == room && all.len() > room, "{case}\n{got:?}");
+        let mut all = Vec::new();
+        let unmerged = merged(ContactMerge::None);
+        collide_frames((&unmerged.0, &unmerged.1), (&b.0, &b.1), CollideOptions::default(), &mut all);
+        assert!(all.len() > room, "{case}\n{got:?}\n{want:?}");
+        if mode <= 1 {
+            assert!(want.len() == room, "{case}\n{got:?}");
             assert!(want.iter().all(|w| all.iter().any(|g| near(g, w, 1e-4))), "{case}\n{all:?}");
         }
     }
     println!("by mode (default, none, normals, full): {agree:?} of {cases:?}");
-    assert!(cases[1] > 0 && agree[0] * 2 >= cases[0] && agree[1] * 2 >= cases[1], "{agree:?} of {cases:?}");
+    assert!(cases.iter().zip(&agree).all(|(c, a)| *c > 0 && a * 2 >= *c), "{agree:?} of {cases:?}");
 }
 
 #[test]

@@ -6,10 +6,10 @@
 mod common;
 
 use common::judge::{Judge, Surface};
-use ferrode_math::Aabb;
 use common::{Record, contacts, number, vector};
 use ferrode_collide::narrow::{collide_frames, distance_frames};
 use ferrode_collide::{CollideOptions, Convex, Frame, GeomContact, Shape};
+use ferrode_math::Aabb;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -114,6 +114,14 @@ fn is_worse(case: &Value, got: &[GeomContact], want: &[GeomContact], b: [&Shape;
 /// Whether a contact lies in the middle of several with the same normal, one of which at least is as deep.
 fn is_spanned(w: &GeomContact, list: &[GeomContact]) -> bool {
     let same: Vec<_> = list.iter().filter(|c| c.point.normal.dot(w.point.normal) > 1.0 - 1e-6).collect();
+    // The same contact, somewhere else between the two surfaces.
+    let is_it = |c: &&GeomContact| {
+        (c.point.depth - w.point.depth).abs() < 1e-4
+            && (c.point.position - w.point.position).length() < 1.1 * w.point.depth + 1e-4
+    };
+    if same.iter().copied().any(|c| is_it(&c)) {
+        return true;
+    }
     let (x, y) = ferrode_math::plane_space(w.point.normal);
     same.len() > 1
         && same.iter().any(|c| c.point.depth > w.point.depth - 1e-4)
@@ -142,19 +150,56 @@ fn least_way(a: &(Shape, Frame), b: &(Shape, Frame)) -> Option<f64> {
     Some(-distance_frames((&sa, &a.1), (&sb, &b.1))?.distance)
 }
 
+fn same_place(a: &GeomContact, b: &GeomContact) -> bool {
+    (a.point.position - b.point.position).abs_max() < 1e-4 && (a.point.depth - b.point.depth).abs() < 1e-4
+}
+
+/// Whether a contact with a heightfield is at an edge between two of its triangles.
+fn is_on_grid(c: &GeomContact, a: &(Shape, Frame), b: &(Shape, Frame)) -> bool {
+    [a, b].iter().any(|g| match &g.0 {
+        Shape::Heightfield(field) => {
+            let p = g.1.point_to_local(c.point.position);
+            let (sx, sz) = field.cell();
+            let (u, v) = ((p.x + 0.5 * field.width()) / sx, (p.z + 0.5 * field.depth()) / sz);
+            [u, v, u + v].iter().any(|x| (x - x.round()).abs() < 1e-9)
+        }
+        _ => false,
+    })
+}
+
 fn sides(case: &Value, k: usize) -> [i64; 2] {
     let side = &case["contacts"][k]["side"];
     [0, 1].map(|i| side[i].as_i64().unwrap_or(-1))
 }
 
 /// Hits of a ray that are not libode's: all hits along the ray, one after the other, decide.
-fn rays(got: &[GeomContact], want: &[GeomContact], a: &(Shape, Frame), b: &(Shape, Frame)) -> (Outcome, String) {
-    let ((Shape::Ray(ray), fr), (surface, fs)) = (if matches!(a.0, Shape::Ray(_)) { (a, b) } else { (b, a) }) else {
+fn rays(
+    got: &[GeomContact],
+    want: &[GeomContact],
+    a: &(Shape, Frame),
+    b: &(Shape, Frame),
+) -> (Outcome, String) {
+    let ((Shape::Ray(ray), fr), (surface, fs)) = (if matches!(a.0, Shape::Ray(_)) { (a, b) } else { (b, a) })
+    else {
         return (Outcome::Other, "no ray".into());
     };
+    if matches!(surface, Shape::Convex(_)) {
+        // Along an edge, where a hair's breadth further out it misses.
+        let misses = [fr.axis(0), -fr.axis(0), fr.axis(1), -fr.axis(1)].iter().any(|out| {
+            let mut none = Vec::new();
+            let apart = Frame::new(fr.position + *out * 1e-9, fr.rotation);
+            collide_frames((&Shape::Ray(*ray), &apart), (surface, fs), CollideOptions::new(1), &mut none) == 0
+        });
+        return match misses && got.len() == 1 {
+            true => (Outcome::More, String::new()),
+            false => (Outcome::Other, format!("ours: {got:?}")),
+        };
+    }
     let (from, along) = (fr.position, fr.axis(2));
-    let reach = Aabb::new(from, from).union(&Aabb::new(from + along * ray.length(), from + along * ray.length()));
-    let hits = Surface::of(surface, fs, &reach).map(|s| s.hits(from, along, ray.length())).unwrap_or_default();
+    let reach =
+        Aabb::new(from, from).union(&Aabb::new(from + along * ray.length(), from + along * ray.length()));
+    let hits =
+        Surface::of(surface, fs, &reach).map(|s| s.hits(from, along, ray.length())).unwrap_or_default();
     let is_hit = |c: &GeomContact| hits.iter().any(|h| (h - c.point.depth).abs() < 1e-4);
     let nearest = hits.first().copied().unwrap_or(f64::INFINITY);
     let ours = got.iter().all(is_hit)
@@ -190,7 +235,9 @@ fn judge(case: &Value, a: &(Shape, Frame), b: &(Shape, Frame)) -> (Outcome, Stri
         return (Outcome::Agree, String::new());
     }
     if is_worse(case, &got, &want, [&a.0, &b.0], [&a.1, &b.1]) {
-        return (Outcome::Repaired, "truth".into());
+        let full = case["truth"].is_null() && want.len() == usize::from(options.max_contacts);
+        let why = if full { "its list is full without the deepest" } else { "by the record's truth" };
+        return (Outcome::Repaired, why.into());
     }
     if let Some(least) = least_way(a, b)
         && least > 1e-3
@@ -201,8 +248,17 @@ fn judge(case: &Value, a: &(Shape, Frame), b: &(Shape, Frame)) -> (Outcome, Stri
     }
     let all = CollideOptions { max_contacts: u16::MAX, ..options };
     collide_frames((&a.0, &a.1), (&b.0, &b.1), all, &mut full);
+    // A ray that begins on the surface: whether it enters there is a matter of the last bit.
+    if case["truth"]["hit"] == true && number(&case["truth"]["depth"]) < 1e-12 {
+        return (Outcome::More, String::new());
+    }
     if [a, b].iter().any(|g| matches!(g.0, Shape::Ray(_))) {
         return rays(&got, &want, a, b);
+    }
+    // Nothing of ours may stand where bodies overlap. Of meshes above fields libode invents contacts, see below.
+    let on_field = [a, b].iter().any(|g| matches!(g.0, Shape::Heightfield(_)));
+    if got.is_empty() && deepest(&want) > 1e-3 && !on_field {
+        return (Outcome::Other, "ours: nothing".into());
     }
     let bench = Judge::new(a, b);
     let has = |list: &[GeomContact], w: &GeomContact| list.iter().any(|g| near(g, w, tolerance));
@@ -214,13 +270,22 @@ fn judge(case: &Value, a: &(Shape, Frame), b: &(Shape, Frame)) -> (Outcome, Stri
     let ours: Vec<_> = got.iter().map(|g| (*g, [i64::from(g.side1), i64::from(g.side2)])).collect();
     let theirs: Vec<_> = want.iter().enumerate().map(|(k, w)| (*w, sides(case, k))).collect();
     // Of ours, those that libode has not.
-    let own_fault = (0..got.len()).filter(|&k| !has(&want, &got[k])).find_map(|k| bench.fault(&ours, k, true));
+    let own_fault =
+        (0..got.len()).filter(|&k| !has(&want, &got[k])).find_map(|k| bench.fault(&ours, k, true));
     let mut reasons = Vec::new();
     for &k in &missing {
         match bench.fault(&theirs, k, false) {
             Some(reason) => reasons.push(reason),
             None if is_spanned(&want[k], &full) => {}
-            None => return (Outcome::Other, format!("contact {k} of libode's; ours: {own_fault:?} {missing:?}")),
+            // At the same place and as deep: of several triangles that meet there, in another order, another mean normal.
+            None if full.iter().any(|g| same_place(g, &want[k])) => {}
+            // Surfaces that just touch push nothing.
+            None if want[k].point.depth < 1e-4 => {}
+            // Rounding decides which triangle a point on an edge between two belongs to, and with it which corners count.
+            None if got.iter().any(|g| !has(&want, g) && is_on_grid(g, a, b)) => {}
+            None => {
+                return (Outcome::Other, format!("contact {k} of libode's; ours: {own_fault:?} {missing:?}"));
+            }
         }
     }
     if let Some(fault) = own_fault {
@@ -273,6 +338,12 @@ fn table() {
     for (reason, n) in &why {
         println!("{n} repaired, {reason}");
     }
-    let other: usize = sums.values().map(|n| n[Outcome::Other as usize]).sum();
-    println!("{other} other");
+    let count = |quality: &str, outcome: Outcome| sums.get(quality).map_or(0, |n| n[outcome as usize]);
+    for (quality, n) in &sums {
+        assert_eq!(n[Outcome::Other as usize], 0, "{quality}: {n:?}");
+    }
+    assert_eq!(count("mpr", Outcome::Repaired) + count("defective", Outcome::Repaired), 0);
+    // Where libode has formulas it is repaired where it fails, and nowhere else.
+    let closed: usize = sums["closed_form"].iter().sum();
+    assert!(count("closed_form", Outcome::Agree) * 100 >= closed * 97, "{sums:?}");
 }

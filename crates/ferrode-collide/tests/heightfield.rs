@@ -50,7 +50,7 @@ fn contacts_are_libodes() {
         differ += more.inspect(|g| assert!(g.point.depth > 0.0, "{case}\n{got:?}")).count();
     }
     println!("{replayed} cases, {differ} contacts more than libode's");
-    assert!(replayed >= 60 && differ * 30 <= replayed, "{replayed} {differ}");
+    assert!(replayed >= 30 && differ * 30 <= replayed, "{replayed} {differ}");
 }
 
 #[test]

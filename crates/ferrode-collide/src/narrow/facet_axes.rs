@@ -3,6 +3,8 @@
 //! What the rules say of a triangle can contradict the surface that it belongs to: a body that slides over a plane of
 //! two triangles meets the edge between them. Such an answer is replaced by that of [`body_facet`].
 
+use super::body_trimesh::body_trimesh;
+use super::convex::touch;
 use super::support::Body;
 use super::triangle::{Facet, Verdict, body_facet, hidden_contact, judge};
 use crate::{Contacts, Frame, GeomContact, Shape, TriMesh};
@@ -152,9 +154,9 @@ pub(super) fn each_facet(
     }
     let local = Frame::new(at, fm.rotation.transpose() * fa.rotation);
     let Some(body) = Body::of(shape, &local, Vec3::ZERO) else { return };
+    let mut overlap = false;
     {
         let mut all = out.all();
-        let mut overlap = false;
         mesh.tree().query(&shape.aabb_in(&local), |i| {
             let Some(facet) = mesh.facet(i) else { return };
             let Some(found) = rule(&local, &facet) else {
@@ -187,6 +189,9 @@ pub(super) fn each_facet(
         }
     }
     super::reduce::keep_wanted(out, body.reach());
+    if overlap && out.is_empty() {
+        lift_out(&body, mesh, &shape.aabb_in(&local), out);
+    }
     for c in out.added() {
         c.point.position = fm.point_to_world(c.point.position);
         c.point.normal = fm.vector_to_world(c.point.normal);
@@ -204,6 +209,30 @@ fn move_down(out: &mut Contacts<'_>, add: impl FnOnce(&mut Contacts<'_>)) {
     add(out);
     for c in &mut out.added()[first..] {
         c.point.position -= c.point.normal * (0.5 * c.point.depth);
+    }
+}
+
+/// The contact of a body that has sunk through a surface, so that nothing that it touches faces its middle: out of the front
+/// of the triangle that it leaves soonest. All is in the mesh's coordinates; `aabb` is the body's.
+pub(super) fn lift_out(body: &Body<'_>, mesh: &TriMesh, aabb: &Aabb, out: &mut Contacts<'_>) {
+    let mut best: Option<GeomContact> = None;
+    mesh.tree().query(aabb, |i| {
+        let Some(facet) = mesh.facet(i) else { return };
+        let n = facet.normal;
+        let lowest = body.support(-n) - n * body.margin;
+        let depth = -facet.height(lowest);
+        let straddles = depth > 0.0 && facet.height(body.support(n)) + body.margin > 0.0;
+        if straddles
+            && best.is_none_or(|b| depth < b.point.depth)
+            && touch(body, &Body::triangle(facet.corners)).is_some()
+        {
+            let mut c = GeomContact::new(lowest, n, depth);
+            c.side2 = facet.index;
+            best = Some(c);
+        }
+    });
+    if let Some(c) = best {
+        out.push_contact(c);
     }
 }
 
@@ -251,5 +280,25 @@ fn add_distinct(c: GeomContact, out: &mut Contacts<'_>) {
     // One of the two faces the body.
     if !from_behind {
         k.side1 = -1;
+    }
+}
+
+/// A convex body without a rule of its own, and a mesh: the contacts of `body_trimesh`, or if it has sunk through the surface
+/// the one that lifts it out.
+pub(super) fn convex_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
+    body_trimesh(shape, fa, mesh, fm, out);
+    if !out.is_empty() {
+        return;
+    }
+    let at = fm.point_to_local(fa.position);
+    if !mesh.bounds().overlaps(&Aabb::from_center(at, Vec3::splat(shape.reach() * (1.0 + 1e-9)))) {
+        return;
+    }
+    let local = Frame::new(at, fm.rotation.transpose() * fa.rotation);
+    let Some(body) = Body::of(shape, &local, Vec3::ZERO) else { return };
+    lift_out(&body, mesh, &shape.aabb_in(&local), out);
+    for c in out.added() {
+        c.point.position = fm.point_to_world(c.point.position);
+        c.point.normal = fm.vector_to_world(c.point.normal);
     }
 }

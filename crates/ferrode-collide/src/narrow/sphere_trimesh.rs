@@ -1,4 +1,5 @@
-use super::reduce::reduce;
+use super::merge::{ContactMerge, merge};
+use super::reduce::{keep_wanted, reduce};
 use super::triangle::Facet;
 use crate::shape::Neighbour;
 use crate::{Contacts, Frame, GeomContact, Sphere, TriMesh};
@@ -6,7 +7,7 @@ use ferrode_math::Aabb;
 use ferrode_math::Vec3;
 
 /// A ball and a mesh: for each triangle that has the centre before it, the point nearest to the centre, with the
-/// triangle's normal and the part of the overlap along it (as libode).
+/// triangle's normal and the part of the overlap along it (as libode), merged as [`TriMesh::with_sphere_merge`] says.
 pub fn sphere_trimesh(sphere: &Sphere, fs: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
     let r = sphere.radius();
     let center = fm.point_to_local(fs.position);
@@ -33,5 +34,12 @@ pub fn sphere_trimesh(sphere: &Sphere, fs: &Frame, mesh: &TriMesh, fm: &Frame, o
             }
         });
     }
-    reduce(out, r);
+    match mesh.sphere_merge() {
+        ContactMerge::None => reduce(out, r),
+        // Two triangles with one normal count twice.
+        way => {
+            keep_wanted(out, r);
+            merge(way, out);
+        }
+    }
 }

@@ -139,11 +139,8 @@ fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Co
     out.push(lowest + n * (0.5 * depth), n, depth);
 }
 
-/// Halvings of the range of directions over a convex edge or corner.
-const HALVINGS: usize = 8;
-
-/// Whether the body leaves sooner over a convex edge or corner, the triangles beyond which have its middle before them too:
-/// then a contact with this one's face would push it the long way.
+/// Whether the body leaves sooner past the triangle beyond a convex edge, which also has its middle before it: then a
+/// contact with this one's face would push it the long way.
 pub(crate) fn nearer_elsewhere(
     body: &Body<'_>,
     facet: &Facet,
@@ -154,57 +151,13 @@ pub(crate) fn nearer_elsewhere(
     if normal.dot(facet.normal) < 1.0 - SAME {
         return false;
     }
-    let enough = found * (1.0 - 1e-6);
-    let beyond = [0, 1, 2].map(|e| match facet.neighbours[e] {
-        Neighbour::Convex(other) if other.dot(middle - facet.corners[e]) > 0.0 => Some(other),
-        _ => None,
-    });
-    (0..3).any(|e| {
-        let Some(over) = beyond[e] else { return false };
-        let corner = facet.corners[e];
-        let depth = |d: Vec3| d.dot(corner - body.support(-d)) + body.margin;
-        // Between the two normals; then, at the corner where the edge begins, between those of three triangles.
-        let fan = [facet.normal, over, beyond[(e + 2) % 3].unwrap_or(over)];
-        least(&fan[..2], &depth, enough) || (beyond[(e + 2) % 3].is_some() && least(&fan, &depth, enough))
+    (0..3).any(|e| match facet.neighbours[e] {
+        Neighbour::Convex(other) if other.dot(middle - facet.corners[e]) > 0.0 => {
+            let depth = other.dot(facet.corners[e] - body.support(-other)) + body.margin;
+            depth >= 0.0 && depth < found * (1.0 - 1e-6)
+        }
+        _ => false,
     })
-}
-
-/// Whether a depth between nothing and `enough` is found among the directions that some normals span, by halving the
-/// range towards the least.
-fn least(fan: &[Vec3], depth: &impl Fn(Vec3) -> f64, enough: f64) -> bool {
-    let mut corners = [Vec3::ZERO; 3];
-    corners[..fan.len()].copy_from_slice(fan);
-    let corners = &mut corners[..fan.len()];
-    let mut best = (f64::INFINITY, 0);
-    for (i, &d) in corners.iter().enumerate() {
-        let x = depth(d);
-        if x < best.0 {
-            best = (x, i);
-        }
-    }
-    let mut center = corners[best.1];
-    for _ in 0..HALVINGS {
-        // Those at half the way from the least so far to each end, and between them.
-        let mut next = (best.0, center);
-        for i in 0..corners.len() {
-            for d in [center + corners[i], corners[i] + corners[(i + 1) % corners.len()]] {
-                let Some(d) = d.normalized() else { continue };
-                let x = depth(d);
-                if (0.0..enough).contains(&x) {
-                    return true;
-                }
-                if x < next.0 {
-                    next = (x, d);
-                }
-            }
-        }
-        best.0 = next.0;
-        for d in corners.iter_mut() {
-            *d = (*d + next.1).normalized_or(next.1);
-        }
-        center = next.1;
-    }
-    (0.0..enough).contains(&best.0)
 }
 
 /// Whether a touch is at an edge that the surface goes on beyond without a bend outward.

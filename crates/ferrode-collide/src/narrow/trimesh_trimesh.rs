@@ -24,7 +24,10 @@ const NEARER: f64 = 0.5;
 pub fn trimesh_trimesh(a: &TriMesh, fa: &Frame, b: &TriMesh, fb: &Frame, out: &mut Contacts<'_>) {
     // In a's coordinates.
     let local = Frame::new(fa.point_to_local(fb.position), fa.rotation.transpose() * fb.rotation);
-    {
+    let mut crossing = false;
+    // Where walls are flush with walls, or meshes cover each other, nothing is deeper than the surface is near elsewhere: then
+    // that does not count.
+    for share in [NEARER, 0.0] {
         let mut all = out.all();
         triangle_pairs(a, b, &local, |i, j| {
             let (Some(ta), Some(tb)) = (a.facet(i), b.facet(j)) else { return };
@@ -34,11 +37,15 @@ pub fn trimesh_trimesh(a: &TriMesh, fa: &Frame, b: &TriMesh, fb: &Frame, out: &m
                 ..tb
             };
             if cross(&ta, &tb) {
-                let nearer_a = |p: Vec3, d: f64| is_near(a, p, d);
-                let nearer_b = |p: Vec3, d: f64| is_near(b, local.point_to_local(p), d);
+                crossing = true;
+                let nearer_a = |p: Vec3, d: f64| is_near(a, p, share * d);
+                let nearer_b = |p: Vec3, d: f64| is_near(b, local.point_to_local(p), share * d);
                 facets(&ta, &tb, nearer_a, nearer_b, &mut all);
             }
         });
+        if !crossing || out.added().iter().any(|c| c.point.depth > BAND) {
+            break;
+        }
     }
     keep_wanted(out, a.bounds().extent().abs_max().min(b.bounds().extent().abs_max()));
     for c in out.added() {
@@ -97,12 +104,11 @@ fn facets(
         let Some((polygon, depth)) = *found else { continue };
         // The triangle that reaches in, the one that it reaches through, and the contact's normal.
         let (inner, surface, normal) = if of_a { (a, b, b.normal) } else { (b, a, -a.normal) };
-        let limit = NEARER * depth;
         let mut any = false;
         for &p in polygon.corners() {
             if -surface.height(p) <= depth - BAND
                 || judge(inner, -surface.normal, p) == Verdict::Ghost
-                || if of_a { nearer_b(p, limit) } else { nearer_a(p, limit) }
+                || if of_a { nearer_b(p, depth) } else { nearer_a(p, depth) }
             {
                 continue;
             }

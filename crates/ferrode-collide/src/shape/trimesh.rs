@@ -1,5 +1,6 @@
 use super::{LARGEST, ShapeError};
 use crate::Frame;
+use crate::narrow::ContactMerge;
 use crate::space::tree::AabbTree;
 use ferrode_math::{Aabb, Vec3};
 use std::collections::BTreeMap;
@@ -11,6 +12,8 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct TriMesh {
     data: Arc<MeshData>,
+    /// Of this handle, not of the data.
+    sphere_merge: ContactMerge,
 }
 
 #[derive(Clone, Debug)]
@@ -103,6 +106,7 @@ impl TriMesh {
             .collect();
         let tree = AabbTree::build(&boxes);
         Ok(Self {
+            sphere_merge: ContactMerge::None,
             data: Arc::new(MeshData {
                 vertices,
                 triangles,
@@ -156,6 +160,18 @@ impl TriMesh {
     #[inline]
     pub fn neighbours(&self, i: u32) -> &[Neighbour; 3] {
         &self.data.neighbours[i as usize]
+    }
+
+    /// The same mesh, whose contacts with balls are merged that way; other shapes' are not.
+    #[must_use]
+    pub fn with_sphere_merge(mut self, merge: ContactMerge) -> Self {
+        self.sphere_merge = merge;
+        self
+    }
+
+    /// How contacts with balls are merged.
+    pub fn sphere_merge(&self) -> ContactMerge {
+        self.sphere_merge
     }
 
     /// The same mesh with other edges and vertices to touch than [`TriMesh::new`] finds: for each triangle bits 0 to 2 the

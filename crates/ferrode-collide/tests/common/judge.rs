@@ -75,22 +75,33 @@ impl Surface {
             let far: Vec<Vec3> = own.iter().copied().filter(|v| m.dot(*v) > level - 1e-6).collect();
             far.iter().fold(Vec3::ZERO, |s, v| s + *v) * (1.0 / far.len() as f64)
         };
-        let meet: Vec<Vec3> =
-            self.triangles.iter().filter(|t| distance(t, at) < NEAR).map(normal).collect();
+        let meet: Vec<Vec3> = self.triangles.iter().filter(|t| distance(t, at) < NEAR).map(normal).collect();
         is_between(m, &meet)
+    }
+
+    /// The triangles within a depth of a point.
+    fn near(&self, p: Vec3, depth: f64) -> impl Iterator<Item = usize> {
+        (0..self.triangles.len()).filter(move |&i| distance(&self.triangles[i], p) < depth + NEAR)
+    }
+
+    /// Whether `m` is a normal where triangle `i` is nearest to a point.
+    fn bears(&self, i: usize, m: Vec3, p: Vec3) -> bool {
+        self.has_normal(i, m, nearest(&self.triangles[i], p))
     }
 
     /// Whether the surface goes on, flat or rising, further along `m` beside a point.
     fn rises_at(&self, m: Vec3, p: Vec3) -> bool {
-        (0..self.triangles.len()).any(|i| distance(&self.triangles[i], p) < NEAR && {
-            let own = &self.triangles[i];
-            let n = normal(own);
-            self.triangles.iter().enumerate().any(|(j, t)| {
-                j != i
-                    && distance(t, p) < NEAR
-                    && t.iter().any(|v| m.dot(*v - p) > NEAR && n.dot(*v - own[0]) > -NEAR)
-                    && own.iter().filter(|v| t.iter().any(|w| (*w - **v).length() < NEAR)).count() == 2
-            })
+        (0..self.triangles.len()).any(|i| {
+            distance(&self.triangles[i], p) < NEAR && {
+                let own = &self.triangles[i];
+                let n = normal(own);
+                self.triangles.iter().enumerate().any(|(j, t)| {
+                    j != i
+                        && distance(t, p) < NEAR
+                        && t.iter().any(|v| m.dot(*v - p) > NEAR && n.dot(*v - own[0]) > -NEAR)
+                        && own.iter().filter(|v| t.iter().any(|w| (*w - **v).length() < NEAR)).count() == 2
+                })
+            }
         })
     }
 
@@ -225,10 +236,9 @@ impl<'a> Judge<'a> {
                 && !surface.is_field
                 && self.surfaces[1 - k].is_none()
                 && !own
+                && !surface.has_normal(i, m, place)
             {
-                if !surface.has_normal(i, m, place) {
-                    return Some("the surface has no such normal there");
-                }
+                return Some("the surface has no such normal there");
             }
             // Of two surfaces: the point of the one that is inside the other.
             if self.surfaces[1 - k].is_some() && !surface.is_field && depth > NEAR {
@@ -243,15 +253,28 @@ impl<'a> Judge<'a> {
                     }
                 } else if surface.distance(p) > NEAR && surface.distance(p) < 0.5 * depth {
                     return Some("the surface is less than half as far elsewhere");
+                } else if !own
+                    && surface.distance(p) < NEAR
+                    && other.distance(p) < NEAR
+                    && depth > 10.0 * NEAR
+                {
+                    return Some("the point is on both surfaces");
+                } else if !own
+                    && !surface.near(p, depth).any(|i| surface.bears(i, m, p))
+                    && !other.near(p, depth).any(|i| other.bears(i, m * -1.0, p))
+                {
+                    return Some("the surface has no such normal there");
                 } else if !own && other.distance(p) < NEAR && other.rises_at(m * -1.0, p) {
                     return Some("the mesh goes on deeper beside the point");
                 }
             }
             // libode names no triangles of convex bodies' contacts: any near will do.
-            if convex && !own && !surface.is_field && depth > NEAR {
-                if let Some(fault) = self.convex_fault(1 - k, surface, c, m, is_deepest) {
-                    return Some(fault);
-                }
+            if convex
+                && !own
+                && !surface.is_field
+                && let Some(fault) = self.convex_fault(1 - k, surface, c, m, is_deepest)
+            {
+                return Some(fault);
             }
         }
         None
@@ -276,24 +299,26 @@ impl<'a> Judge<'a> {
             let high = t.map(|v| m.dot(v)).into_iter().fold(f64::NEG_INFINITY, f64::max);
             (high - low - depth).abs() < NEAR
         };
-        if is_deepest && !near().any(|(_, t)| fits(t)) {
+        if is_deepest && depth > NEAR && !near().any(|(_, t)| fits(t)) {
             return Some("the depth is no triangle's along the normal");
         }
-        // How far the body reaches below the surface at the point itself.
-        let inside = |t: f64| point_depth(self.shapes[body], self.frames[body], p - m * t).is_some_and(|d| d > 0.0);
-        if inside(0.0) {
-            let (mut lo, mut hi) = (0.0, 10.0);
-            for _ in 0..60 {
-                let middle = 0.5 * (lo + hi);
-                if inside(middle) { lo = middle } else { hi = middle }
+        // How far the body reaches below the surface on the line through the point.
+        let inside =
+            |t: f64| point_depth(self.shapes[body], self.frames[body], p + m * t).is_some_and(|d| d > 0.0);
+        let steps = || (-300..=300).map(|k| f64::from(k) * 0.01 + 1e-5);
+        if let Some(first) = steps().find(|&t| inside(t)) {
+            let (mut below, mut above) = (first - 0.01, first);
+            for _ in 0..50 {
+                let middle = 0.5 * (below + above);
+                *(if inside(middle) { &mut above } else { &mut below }) = middle;
             }
             let up = |t: &[Vec3; 3]| {
                 let n = normal(t);
                 let way = n.dot(t[0] - p) / n.dot(m);
-                (distance(t, p + m * way) < NEAR).then_some(way)
+                (n.dot(m) > 1e-6 && distance(t, p + m * way) < NEAR).then_some(way - above)
             };
-            let ways: Vec<f64> = near().filter_map(|(_, t)| up(t)).filter(|w| w.abs() <= depth + NEAR).collect();
-            if !ways.is_empty() && ways.iter().all(|w| (w + lo - depth).abs() > 1e-3) {
+            let overlaps: Vec<f64> = surface.triangles.iter().filter_map(up).filter(|w| *w > 0.0).collect();
+            if !overlaps.is_empty() && overlaps.iter().all(|w| (w - depth).abs() > 1e-3) {
                 return Some("the bodies overlap by another length at the point");
             }
         }
