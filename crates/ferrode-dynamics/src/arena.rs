@@ -121,6 +121,11 @@ impl<T> Arena<T> {
         self.slots[index as usize].value.as_mut().expect("a linked slot holds an object")
     }
 
+    /// As [`Arena::get`], to change it.
+    pub fn get_mut(&mut self, index: u32) -> Option<&mut T> {
+        self.slots.get_mut(index as usize)?.value.as_mut()
+    }
+
     /// The object in a slot, if it is in use.
     pub fn get(&self, index: u32) -> Option<&T> {
         self.slots.get(index as usize)?.value.as_ref()

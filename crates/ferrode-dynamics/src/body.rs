@@ -65,6 +65,10 @@ pub struct Body {
     pub(crate) damping: Damping,
     pub(crate) auto_disable: AutoDisable,
     pub(crate) idleness: Idleness,
+    /// How long `Substep` has seen the body rest, in seconds.
+    pub(crate) rest_time: f64,
+    /// The bodies that fell asleep together have the same number; 0 for those awake.
+    pub(crate) sleep_group: u64,
     pub(crate) moved: Option<MovedCallback>,
     pub(crate) user_data: u64,
     /// Counts changes of the pose, so that others can tell whether they have seen the latest.
@@ -110,6 +114,8 @@ impl Body {
             damping,
             auto_disable,
             idleness: Idleness::new(&auto_disable),
+            rest_time: 0.0,
+            sleep_group: 0,
             moved: None,
             user_data: 0,
             pose_version: 0,

@@ -1,6 +1,24 @@
 //! The gyroscopic torque of a spinning body, linearly implicit.
 
+use crate::body::Body;
 use ferrode_math::{Mat3, Vec3};
+
+impl Body {
+    /// The gyroscopic torque on the body in a step of `h` seconds; zero if that is switched off, and for bodies that are
+    /// equally heavy to turn about all axes.
+    pub(crate) fn gyroscopic(&self, h: f64) -> Vec3 {
+        let w = self.frame.angular_velocity;
+        if !self.gyroscopic_mode || self.is_kinematic() || w == Vec3::ZERO {
+            return Vec3::ZERO;
+        }
+        let i = &self.mass.inertia.rows;
+        let off_diagonal = [i[0][1], i[0][2], i[1][2]];
+        if i[0][0] == i[1][1] && i[1][1] == i[2][2] && off_diagonal == [0.0; 3] {
+            return Vec3::ZERO;
+        }
+        torque(&self.inertia_world(), w, h)
+    }
+}
 
 /// Torque that makes a free body spin as ω' = (I − h [L]×)⁻¹ I ω, with L = I ω.
 ///

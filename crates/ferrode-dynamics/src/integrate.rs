@@ -16,7 +16,8 @@ pub(crate) fn advance_pose(body: &mut Body, h: f64) {
     body.pose_version = body.pose_version.wrapping_add(1);
 }
 
-fn limit_angular_speed(body: &mut Body) {
+/// Slows a body down that spins faster than it may.
+pub(crate) fn limit_angular_speed(body: &mut Body) {
     let limit = body.max_angular_speed;
     if limit < f64::INFINITY {
         let speed_squared = body.frame.angular_velocity.length_squared();

@@ -54,5 +54,6 @@ pub use rows::{NO_FRICTION_INDEX, Row, RowKind};
 pub use sleep::AutoDisable;
 pub use softness::Softness;
 pub use solve::direct::DirectSettings;
+pub use solve::substep::{ContactManifold, MANIFOLD_POINTS, ManifoldPoint, Spring, SubstepSettings};
 pub use step::Stepper;
 pub use world::{QuickSettings, World};

@@ -8,7 +8,7 @@ use crate::foreign::MovedObserver;
 use crate::island::Islands;
 use crate::joint::Joint;
 use crate::rows::{JointRows, Row, RowCount, Wrench};
-use crate::solve::{direct, quick};
+use crate::solve::{direct, quick, substep};
 use crate::{Error, StepReport, World, gyroscopic, integrate};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Vec3};
@@ -22,6 +22,8 @@ pub enum Stepper {
     /// Iterative: sweeps over the rows (ODE's `dWorldQuickStep`). Fast, approximate.
     #[default]
     Quick,
+    /// Thousands of bodies in real time: soft constraints, substeps, SIMD lanes, warm starts (the manual's "StepFast").
+    Substep,
 }
 
 /// A body as the solvers see it: in a dense array, in the order of its island.
@@ -62,8 +64,9 @@ pub(crate) struct Island {
     place: Vec<u32>,
 }
 
-/// Memory that is kept from step to step. Only `Direct`'s part holds something of the past, the guesses that its solves
-/// begin from: among redundant forces a guess can decide, so a clone takes them along and steps to the same bits.
+/// Memory that is kept from step to step. Of the past, `Direct`'s part holds the guesses that its solves begin
+/// from, which can decide among redundant forces, and `Substep`'s the impulses of joints. A clone takes both along and
+/// steps to the same bits.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
     islands: Islands,
@@ -74,11 +77,12 @@ pub(crate) struct Scratch {
     #[allow(clippy::vec_box)]
     pub spare_contacts: Vec<Box<crate::joint::Contact>>,
     fast: fast::Workspace,
+    pub substep: substep::Workspace,
 }
 
 impl Clone for Scratch {
     fn clone(&self) -> Self {
-        Self { direct: self.direct.clone(), ..Self::default() }
+        Self { direct: self.direct.clone(), substep: self.substep.clone(), ..Self::default() }
     }
 }
 
@@ -123,6 +127,9 @@ impl World {
         random: &mut OdeRandom,
         moved: MovedObserver<'_>,
     ) -> Result<StepReport, Error> {
+        if stepper == Stepper::Substep {
+            return self.step_substep(h, &mut [], &[], moved);
+        }
         crate::softness::step_size(h)?;
         debug_assert_eq!(self.check(), Ok(()));
         let mut report = StepReport::default();
@@ -158,7 +165,7 @@ impl World {
                     }
                     solved
                 }
-                Stepper::Quick => {
+                _ => {
                     let solved = quick::solve(island, h, &self.params.quick, random, quick);
                     report.count_exit(quick.exit);
                     solved
@@ -168,7 +175,7 @@ impl World {
             self.write_feedback(island);
             match stepper {
                 Stepper::Direct => direct::sum_forces(island, direct),
-                Stepper::Quick => quick::update_velocities(island, h, quick),
+                _ => quick::update_velocities(island, h, quick),
             }
             self.move_bodies(bodies, island, (stepper, h), moved, &mut report);
         }
@@ -177,7 +184,7 @@ impl World {
         Ok(report)
     }
 
-    fn step_context(&self, h: f64) -> StepContext {
+    pub(crate) fn step_context(&self, h: f64) -> StepContext {
         let p = &self.params;
         StepContext {
             h,
@@ -199,7 +206,7 @@ impl World {
     }
 
     /// Takes bodies out whose state or gathered force is not finite, before they spoil their islands.
-    fn quarantine_unusable_bodies(&mut self, report: &mut StepReport) {
+    pub(crate) fn quarantine_unusable_bodies(&mut self, report: &mut StepReport) {
         let mut index = self.body_list.first;
         while index != crate::arena::NIL {
             let body = self.bodies.at_mut(index);
@@ -397,7 +404,7 @@ impl Body {
     }
 
     /// Takes the body out of the simulation, at rest in its last good pose.
-    fn quarantine(&mut self, last_good: Option<&Frame>) {
+    pub(crate) fn quarantine(&mut self, last_good: Option<&Frame>) {
         if let Some(frame) = last_good {
             self.frame = *frame;
         }

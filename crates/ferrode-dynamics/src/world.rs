@@ -7,6 +7,7 @@ use crate::error::{finite, finite_number, not_nan};
 use crate::group::{GroupKey, JointGroup};
 use crate::joint::{Contact, Joint, JointKind, Link, Node};
 use crate::solve::direct::DirectSettings;
+use crate::solve::substep::SubstepSettings;
 use crate::step::Scratch;
 use crate::{AutoDisable, Damping, DynamicIterations, Error, JointFeedback, JointKey, JointType};
 use ferrode_math::Vec3;
@@ -46,6 +47,7 @@ pub(crate) struct Params {
     pub contact_surface_layer: f64,
     pub quick: QuickSettings,
     pub direct: DirectSettings,
+    pub substep: SubstepSettings,
 }
 
 impl Default for Params {
@@ -61,6 +63,7 @@ impl Default for Params {
             contact_surface_layer: 0.0,
             quick: QuickSettings::default(),
             direct: DirectSettings::default(),
+            substep: SubstepSettings::default(),
         }
     }
 }
@@ -85,6 +88,8 @@ pub struct World {
     pub(crate) params: Params,
     pub(crate) random: OdeRandom,
     pub(crate) user_data: u64,
+    /// Numbers given to groups of bodies that fell asleep together.
+    pub(crate) sleep_groups: u64,
     pub(crate) scratch: Scratch,
 }
 
@@ -106,6 +111,7 @@ impl World {
             params: Params::default(),
             random: OdeRandom::default(),
             user_data: 0,
+            sleep_groups: 0,
             scratch: Scratch::default(),
         }
     }
@@ -256,6 +262,21 @@ impl World {
     /// Sets how `Direct` solves.
     pub fn set_direct(&mut self, settings: DirectSettings) {
         self.params.direct = settings;
+    }
+
+    /// How `Substep` steps.
+    pub fn substep(&self) -> &SubstepSettings {
+        &self.params.substep
+    }
+
+    /// Sets how `Substep` steps.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] naming the first unusable number.
+    pub fn set_substep(&mut self, settings: SubstepSettings) -> Result<(), Error> {
+        settings.check()?;
+        self.params.substep = settings;
+        Ok(())
     }
 
     /// The state of the random generator that shuffles `Quick`'s rows.

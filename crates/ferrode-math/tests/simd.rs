@@ -112,6 +112,10 @@ impl Kernel for Double<'_> {
             index.as_mut()[..chunk.len()].copy_from_slice(chunk);
             let numbers = L::gather(cells, &index);
             let blocks = numbers.map(L::store);
+            let copies: Vec<Record> = (index.as_ref().iter())
+                .map(|i| cells.get(*i as usize).map_or(Record::ZERO, Cell::get))
+                .collect();
+            assert!(L::transpose(|lane| &copies[lane]) == numbers);
             read.extend((0..chunk.len()).map(|lane| blocks.map(|b| b.as_ref()[lane].to_bits())));
             L::scatter(cells, &index, numbers.map(|x| x + x));
         }

@@ -2,6 +2,7 @@
 
 pub(crate) mod direct;
 pub(crate) mod quick;
+pub(crate) mod substep;
 
 use crate::rows::Row;
 use crate::step::{JointSpan, SolverBody};

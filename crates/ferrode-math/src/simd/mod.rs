@@ -130,6 +130,12 @@ pub trait Lanes: Scalar + Send + Sync + 'static {
         portable::gather(records, index.as_ref())
     }
 
+    /// The numbers of as many records as there are lanes, each found by its lane's number.
+    #[inline(always)]
+    fn transpose<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; 8] {
+        portable::transpose(record)
+    }
+
     /// Writes the records `index`; skips [`NO_RECORD`] and all that lies beyond the end. Of lanes with the same index
     /// the last one counts.
     #[inline(always)]

@@ -96,6 +96,18 @@ pub(super) fn gather<L: Lanes>(records: &[Cell<Record>], index: &[u32]) -> [L; 8
     blocks.map(|block| L::load(&block))
 }
 
+/// As [`Lanes::transpose`], number by number.
+#[inline(always)]
+pub(super) fn transpose<'a, L: Lanes>(record: impl Fn(usize) -> &'a Record) -> [L; 8] {
+    let mut blocks = [L::Block::default(); 8];
+    for lane in 0..L::LANES {
+        for (block, x) in blocks.iter_mut().zip(record(lane).0) {
+            block.as_mut()[lane] = x;
+        }
+    }
+    blocks.map(|block| L::load(&block))
+}
+
 /// As [`Lanes::scatter`], number by number.
 #[inline(always)]
 pub(super) fn scatter<L: Lanes>(records: &[Cell<Record>], index: &[u32], numbers: [L; 8]) {

@@ -205,8 +205,15 @@ macro_rules! lanes {
 
             #[inline(always)]
             fn gather(records: &[Cell<Record>], index: &[u32; $n]) -> [Self; 8] {
-                // SAFETY: lanes of this type exist only where the machine has the instructions.
-                unsafe { $gather(records, index) }
+                // SAFETY: lanes of this type exist only where the machine has the instructions; each source is a record
+                // that nothing writes meanwhile, for cells are not shared among threads.
+                unsafe { $gather(index.map(|i| source(records, i))) }
+            }
+
+            #[inline(always)]
+            fn transpose<'a>(record: impl Fn(usize) -> &'a Record) -> [Self; 8] {
+                // SAFETY: as in `gather`; a reference to a record can be read.
+                unsafe { $gather(core::array::from_fn(|lane| record(lane).0.as_ptr())) }
             }
 
             #[inline(always)]
@@ -420,12 +427,12 @@ unsafe fn transpose16(r: [__m512; 4]) -> [__m512; 4] {
     }
 }
 
+/// # Safety
+/// The pointers are those of records, which can be read.
 #[inline(always)]
-unsafe fn gather4(records: &[Cell<Record>], index: &[u32; 4]) -> [F32x4; 8] {
-    // SAFETY: every x86-64 machine has SSE2. Each source is a record of eight floats, aligned to 32 bytes, that is not
-    // written meanwhile: cells are not shared among threads.
+unsafe fn gather4(p: [*const f32; 4]) -> [F32x4; 8] {
+    // SAFETY: every x86-64 machine has SSE2. Each source is a record of eight floats, aligned to 32 bytes.
     unsafe {
-        let p = index.map(|i| source(records, i));
         let low = transpose4(p.map(|p| _mm_load_ps(p)));
         let high = transpose4(p.map(|p| _mm_load_ps(p.add(4))));
         [low[0], low[1], low[2], low[3], high[0], high[1], high[2], high[3]].map(F32x4)
@@ -452,12 +459,11 @@ unsafe fn scatter4(records: &[Cell<Record>], index: &[u32; 4], numbers: [F32x4; 
 /// Lanes i and i + 4 share a register from the start, so that the transposition stays within halves.
 ///
 /// # Safety
-/// The machine has AVX.
+/// The machine has AVX; the pointers are those of records, which can be read.
 #[inline(always)]
-unsafe fn gather8(records: &[Cell<Record>], index: &[u32; 8]) -> [F32x8; 8] {
+unsafe fn gather8(p: [*const f32; 8]) -> [F32x8; 8] {
     // SAFETY: the caller's promise; sources as in `gather4`.
     unsafe {
-        let p = index.map(|i| source(records, i));
         let pair = |i: usize, offset: usize| {
             let first = _mm256_castps128_ps256(_mm_load_ps(p[i].add(offset)));
             _mm256_insertf128_ps::<1>(first, _mm_load_ps(p[i + 4].add(offset)))
@@ -493,12 +499,11 @@ unsafe fn scatter8(records: &[Cell<Record>], index: &[u32; 8], numbers: [F32x8; 
 /// Lanes i, i + 4, i + 8 and i + 12 share a register from the start.
 ///
 /// # Safety
-/// The machine has AVX-512F.
+/// The machine has AVX-512F; the pointers are those of records, which can be read.
 #[inline(always)]
-unsafe fn gather16(records: &[Cell<Record>], index: &[u32; 16]) -> [F32x16; 8] {
+unsafe fn gather16(p: [*const f32; 16]) -> [F32x16; 8] {
     // SAFETY: the caller's promise; sources as in `gather4`.
     unsafe {
-        let p = index.map(|i| source(records, i));
         let four = |i: usize, offset: usize| {
             let r = _mm512_castps128_ps512(_mm_load_ps(p[i].add(offset)));
             let r = _mm512_insertf32x4::<1>(r, _mm_load_ps(p[i + 4].add(offset)));

@@ -1,0 +1,269 @@
+//! Contacts in lanes: as many manifolds side by side as the machine has lanes.
+//!
+//! A manifold has up to four rows along its normal, and one block of friction at the centre of its points: two tangents,
+//! whose impulse stays within the disc |f| ≤ μ N, and a twist about the normal, |τ| ≤ μ N r with r the mean distance of
+//! the points from their centre, which is the torque that friction at the points would have. N is the sum of the normal
+//! impulses. Both sides are linearised at the start of the step; separations follow the bodies' displacements.
+//!
+//! Rows hold scaled Jacobians (see `bodies`). The linear part of all rows of a manifold is its normal or tangent times the
+//! two scales; only the angular parts are stored row by row.
+
+mod extra;
+mod prepare;
+mod restitution;
+mod store;
+mod sweep;
+mod vector;
+
+use super::bodies::SolverBodies;
+use super::colour::{COLOURS, OVERFLOW};
+use super::manifold::{ContactManifold, MANIFOLD_POINTS};
+use super::soft::Coefficients;
+use super::surface::SurfaceCoefficients;
+use core::any::Any;
+use core::ops::Range;
+use ferrode_math::simd::{Kernel, Lanes, Level, dispatch_at};
+
+pub(super) use extra::Extra;
+
+/// Three numbers per lane in memory.
+type Block3<L> = [<L as Lanes>::Block; 3];
+
+/// A row along the normal.
+#[derive(Clone, Copy, Debug, Default)]
+struct PointRow<B> {
+    /// Angular parts: Sᵀ (r × n), and its negative for the second body.
+    angular: [[B; 3]; 2],
+    /// 1 / (J̃ J̃ᵀ); 0 for points that the manifold hasn't.
+    mass: B,
+    /// At the start of the step.
+    separation0: B,
+    /// Now.
+    separation: B,
+    impulse: B,
+}
+
+/// The block of friction.
+#[derive(Clone, Copy, Debug, Default)]
+struct FrictionRows<B> {
+    /// Angular parts along the first and second tangent and about the normal, for each body.
+    angular: [[[B; 3]; 2]; 3],
+    /// Inverse of the 2×2 matrix of the tangents: 11, 12, 22.
+    mass: [B; 3],
+    twist_mass: B,
+    /// Along the tangents, and about the normal.
+    impulse: [B; 3],
+    mu: B,
+    /// Mean distance of the points from their centre.
+    radius: B,
+}
+
+/// As many manifolds as there are lanes; no movable body is in two of them.
+#[derive(Clone, Copy, Debug)]
+struct Batch<L: Lanes> {
+    bodies: [L::Index; 2],
+    normal: Block3<L>,
+    tangent: Block3<L>,
+    /// Square roots of the inverse masses.
+    scale: [L::Block; 2],
+    bias_rate: L::Block,
+    mass_scale: L::Block,
+    impulse_scale: L::Block,
+    push_out: L::Block,
+    points: [PointRow<L::Block>; MANIFOLD_POINTS],
+    friction: FrictionRows<L::Block>,
+    /// Points of the manifold that has most.
+    count: u32,
+    /// Place in the list of extras, for manifolds with more than plain friction; or `NO_EXTRA`.
+    extra: u32,
+    /// Places in the order of manifolds.
+    range: (u32, u32),
+}
+
+const NO_EXTRA: u32 = u32::MAX;
+
+/// Batches of one kind of lanes.
+#[derive(Debug)]
+struct Batches<L: Lanes> {
+    list: Vec<Batch<L>>,
+    extras: Vec<Extra<L>>,
+    /// The batches of each colour, the overflow last.
+    colours: Vec<Range<usize>>,
+}
+
+impl<L: Lanes> Default for Batches<L> {
+    fn default() -> Self {
+        Self { list: Vec::new(), extras: Vec::new(), colours: vec![0..0; COLOURS + 1] }
+    }
+}
+
+/// The contacts of a step.
+#[derive(Debug, Default)]
+pub(super) struct Contacts {
+    /// Manifolds by colour and kind.
+    pub order: Vec<u32>,
+    /// Where each colour begins in `order`; the overflow and the end come last.
+    starts: [u32; COLOURS + 2],
+    /// Dense places of the bodies of each manifold, and its sorting key.
+    pub keys: Vec<ManifoldKey>,
+    /// Batches in the lanes of this machine: `Batches<L>`.
+    wide: Option<Box<dyn Any + Send + Sync>>,
+    /// Batches of one lane for what fits no colour: `Batches<One>`.
+    narrow: Option<Box<dyn Any + Send + Sync>>,
+    counts: Vec<u32>,
+    pub has_bounce: bool,
+}
+
+/// What is known of a manifold before its rows are made.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ManifoldKey {
+    /// Dense places, or `u32::MAX`.
+    pub bodies: [u32; 2],
+    /// Colour, kind and number of points, in the order of solving; `NOT_SOLVED` for one without points or movable bodies.
+    pub sort: u16,
+}
+
+/// The key of a manifold that is left out.
+pub(super) const NOT_SOLVED: u16 = u16::MAX;
+/// Kinds of manifolds within a colour: plain and special ones with 4, 3, 2, 1 points.
+const KINDS: usize = 8;
+
+/// The sorting key of a manifold with `points` points.
+pub(super) fn sort_key(colour: usize, special: bool, points: usize) -> u16 {
+    (colour * KINDS + usize::from(special) * 4 + (MANIFOLD_POINTS - points)) as u16
+}
+
+/// What all passes need.
+#[derive(Clone, Copy)]
+pub(super) struct Context<'a> {
+    pub bodies: &'a SolverBodies,
+    pub manifolds: &'a [ContactManifold],
+    pub surfaces: &'a [SurfaceCoefficients],
+    /// Of contacts between movable bodies.
+    pub soft: Coefficients,
+    /// Of contacts with what can't move.
+    pub firm: Coefficients,
+    /// Of this step to the one before, in length: impulses carried over grow with it.
+    pub ratio: f32,
+}
+
+/// A pass over the contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pass {
+    /// Applies the impulses of the step before.
+    WarmStart,
+    /// Solves, pushing overlapping bodies apart.
+    Biased,
+    /// Solves for velocities alone.
+    Relax,
+    /// Gives speed back.
+    Restitution,
+}
+
+impl Contacts {
+    /// Number of rows: those along normals, and three of friction per manifold.
+    pub fn row_count(&self) -> usize {
+        let points = |key: &ManifoldKey| MANIFOLD_POINTS - usize::from(key.sort) % 4;
+        self.keys.iter().filter(|key| key.sort != NOT_SOLVED).map(|key| points(key) + 3).sum()
+    }
+
+    /// Sorts the manifolds by their keys.
+    pub fn arrange(&mut self) {
+        let kinds = (COLOURS + 1) * KINDS;
+        self.counts.clear();
+        self.counts.resize(kinds + 1, 0);
+        let solved = |key: &&ManifoldKey| key.sort != NOT_SOLVED;
+        for key in self.keys.iter().filter(solved) {
+            self.counts[usize::from(key.sort) + 1] += 1;
+        }
+        for k in 0..kinds {
+            self.counts[k + 1] += self.counts[k];
+        }
+        for (colour, start) in self.starts.iter_mut().enumerate() {
+            *start = self.counts[colour * KINDS];
+        }
+        self.order.clear();
+        self.order.resize(self.counts[kinds] as usize, 0);
+        for (i, key) in self.keys.iter().enumerate() {
+            if key.sort != NOT_SOLVED {
+                let place = &mut self.counts[usize::from(key.sort)];
+                self.order[*place as usize] = i as u32;
+                *place += 1;
+            }
+        }
+    }
+
+    /// Makes the rows of all manifolds.
+    pub fn prepare(&mut self, level: Level, context: &Context<'_>) {
+        dispatch_at(level, Prepare { contacts: self, context, colours: 0..COLOURS, wide: true });
+        dispatch_at(
+            Level::Scalar,
+            Prepare { contacts: self, context, colours: OVERFLOW..OVERFLOW + 1, wide: false },
+        );
+    }
+
+    /// Makes a pass over all manifolds, colour after colour, the overflow last.
+    pub fn pass(&mut self, level: Level, pass: Pass, bodies: &mut SolverBodies, (h, elapsed): (f32, f32)) {
+        if self.order.is_empty() {
+            return;
+        }
+        if let Some(batches) = &mut self.wide {
+            dispatch_at(level, sweep::Sweep { batches: &mut **batches, bodies, pass, h, elapsed });
+        }
+        if self.starts[OVERFLOW] != self.starts[OVERFLOW + 1]
+            && let Some(batches) = &mut self.narrow
+        {
+            dispatch_at(Level::Scalar, sweep::Sweep { batches: &mut **batches, bodies, pass, h, elapsed });
+        }
+    }
+
+    /// Writes the impulses back into the manifolds.
+    pub fn store(&self, level: Level, manifolds: &mut [ContactManifold]) {
+        if let Some(batches) = &self.wide {
+            dispatch_at(level, store::Store { batches: &**batches, order: &self.order, manifolds });
+        }
+        if let Some(batches) = &self.narrow {
+            dispatch_at(Level::Scalar, store::Store { batches: &**batches, order: &self.order, manifolds });
+        }
+    }
+}
+
+/// Makes batches of some colours.
+struct Prepare<'a> {
+    contacts: &'a mut Contacts,
+    context: &'a Context<'a>,
+    colours: Range<usize>,
+    wide: bool,
+}
+
+impl Kernel for Prepare<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Contacts { order, starts, keys, wide, narrow, .. } = self.contacts;
+        let place = if self.wide { wide } else { narrow };
+        if !place.as_ref().is_some_and(|b| b.is::<Batches<L>>()) {
+            *place = Some(Box::new(Batches::<L>::default()));
+        }
+        let Some(batches) = place.as_mut().and_then(|b| b.downcast_mut::<Batches<L>>()) else { return };
+        batches.list.clear();
+        batches.extras.clear();
+        batches.colours.fill(0..0);
+        for colour in self.colours {
+            let first = batches.list.len();
+            let (mut at, end) = (starts[colour] as usize, starts[colour + 1] as usize);
+            let plain_end = at + order[at..end].partition_point(|i| !is_special(keys[*i as usize].sort));
+            while at < end {
+                let stop = (at + L::LANES).min(if at < plain_end { plain_end } else { end });
+                prepare::push_batch(batches, self.context, keys, order, at..stop, at >= plain_end);
+                at = stop;
+            }
+            batches.colours[colour] = first..batches.list.len();
+        }
+    }
+}
+
+fn is_special(sort: u16) -> bool {
+    usize::from(sort) % KINDS >= 4
+}

@@ -1,0 +1,197 @@
+//! From manifolds to rows.
+
+use super::extra::{self, Extra};
+use super::vector::{Motion, lanes, mul_lower_transpose, store3, tangent};
+use super::{Batch, Batches, Context, FrictionRows, ManifoldKey, NO_EXTRA, PointRow};
+use crate::solve::substep::manifold::{MANIFOLD_POINTS, STATIC};
+use crate::solve::substep::surface::SurfaceCoefficients;
+use core::ops::Range;
+use ferrode_math::simd::{Lanes, NO_RECORD, Record};
+use ferrode_math::Vector3;
+
+static NOTHING: Record = Record::ZERO;
+static NO_SURFACE: SurfaceCoefficients = SurfaceCoefficients::NONE;
+
+/// Geometry of a batch that only preparation needs.
+pub(super) struct Sides<L: Lanes> {
+    /// Scales of the bodies, by [`mul_lower_transpose`]'s layout.
+    pub scales: [[L; 8]; 2],
+    pub normal: Vector3<L>,
+    pub tangents: [Vector3<L>; 2],
+    /// Arms of the points, and whether each is there: 1 or 0.
+    pub arms: [[Vector3<L>; 2]; MANIFOLD_POINTS],
+    pub present: [L; MANIFOLD_POINTS],
+    /// Arms of the centre of the points.
+    pub centre: [Vector3<L>; 2],
+    /// Rolling impulse carried over.
+    pub rolling: Vector3<L>,
+    /// J̃ J̃ᵀ of the row about the normal.
+    pub twist: L,
+}
+
+/// Adds the batch of the manifolds `order[range]`.
+#[inline(always)]
+pub(super) fn push_batch<L: Lanes>(
+    batches: &mut Batches<L>,
+    context: &Context<'_>,
+    keys: &[ManifoldKey],
+    order: &[u32],
+    range: Range<usize>,
+    special: bool,
+) {
+    let manifolds = &order[range.clone()];
+    let manifold = |lane: usize| manifolds.get(lane).map(|i| &context.manifolds[*i as usize]);
+    let surface =
+        |lane: usize| manifold(lane).map_or(&NO_SURFACE, |m| &context.surfaces[m.surface as usize]);
+    let mut bodies = [L::Index::default(); 2];
+    for (side, index) in bodies.iter_mut().enumerate() {
+        for (lane, i) in index.as_mut().iter_mut().enumerate() {
+            *i = manifolds
+                .get(lane)
+                .map_or(NO_RECORD, |i| context.bodies.record(keys[*i as usize].bodies[side]));
+        }
+    }
+    let gather_scales = |index: &L::Index| {
+        L::transpose(|lane| context.bodies.scales.get(index.as_ref()[lane] as usize).unwrap_or(&NOTHING))
+    };
+    let scales = [gather_scales(&bodies[0]), gather_scales(&bodies[1])];
+    let head = L::transpose(|lane| manifold(lane).map_or(&NOTHING, |m| &m.head));
+    let tail = L::transpose(|lane| manifold(lane).map_or(&NOTHING, |m| &m.tail));
+    let normal = Vector3::new(head[0], head[1], head[2]);
+    let ratio = L::splat(context.ratio);
+    let carried = Vector3::new(head[4], head[5], head[6]) * ratio;
+    let given = Vector3::new(tail[0], tail[1], tail[2]);
+    let has_tangent = L::splat(0.25).lt(given.length_squared());
+    let free = tangent(normal);
+    let t1 = Vector3::new(
+        L::select(has_tangent, given.x, free.x),
+        L::select(has_tangent, given.y, free.y),
+        L::select(has_tangent, given.z, free.z),
+    );
+    let t2 = normal.cross(t1);
+
+    let count = lanes::<L>(|lane| manifold(lane).map_or(0.0, |m| f32::from(m.count)));
+    let layer = lanes::<L>(|lane| surface(lane).layer);
+    let (inv_mass1, inv_mass2) = (scales[0][0] * scales[0][0], scales[1][0] * scales[1][0]);
+    let inv_mass = inv_mass1 + inv_mass2;
+
+    // Rows along the normal.
+    let most = manifolds.iter().map(|i| context.manifolds[*i as usize].count).max().unwrap_or(0);
+    let mut points = [PointRow::default(); MANIFOLD_POINTS];
+    let mut arms = [[Vector3::ZERO; 2]; MANIFOLD_POINTS];
+    let mut present = [L::ZERO; MANIFOLD_POINTS];
+    let mut centre = [Vector3::ZERO; 2];
+    for k in 0..usize::from(most) {
+        let r = L::transpose(|lane| manifold(lane).map_or(&NOTHING, |m| &m.points[k]));
+        let here = L::splat(k as f32).lt(count);
+        let one = L::select(here, L::ONE, L::ZERO);
+        let arm = [Vector3::new(r[0], r[1], r[2]), Vector3::new(r[4], r[5], r[6])];
+        let a = mul_lower_transpose(&scales[0], arm[0].cross(normal)) * one;
+        let b = -(mul_lower_transpose(&scales[1], arm[1].cross(normal)) * one);
+        let inverse = inv_mass + a.length_squared() + b.length_squared();
+        let mass = L::select(here & L::ZERO.lt(inverse), L::ONE / inverse, L::ZERO);
+        let separation = r[3] + layer;
+        points[k] = PointRow {
+            angular: [store3(a), store3(b)],
+            mass: mass.store(),
+            separation0: separation.store(),
+            separation: separation.store(),
+            impulse: (r[7] * one * ratio).store(),
+        };
+        centre[0] += arm[0] * one;
+        centre[1] += arm[1] * one;
+        (arms[k], present[k]) = (arm, one);
+    }
+    let share = L::select(L::ZERO.lt(count), L::ONE / count, L::ZERO);
+    centre = centre.map(|c| c * share);
+    let mut radius = L::ZERO;
+    for (arm, one) in arms.iter().zip(present).take(usize::from(most)) {
+        radius += (arm[0] - centre[0]).length() * one;
+    }
+
+    // Friction.
+    let rows = [
+        [
+            mul_lower_transpose(&scales[0], centre[0].cross(t1)),
+            -mul_lower_transpose(&scales[1], centre[1].cross(t1)),
+        ],
+        [
+            mul_lower_transpose(&scales[0], centre[0].cross(t2)),
+            -mul_lower_transpose(&scales[1], centre[1].cross(t2)),
+        ],
+        [mul_lower_transpose(&scales[0], normal), -mul_lower_transpose(&scales[1], normal)],
+    ];
+    let product = |i: usize, j: usize| rows[i][0].dot(rows[j][0]) + rows[i][1].dot(rows[j][1]);
+    let (mut k11, k12, mut k22) = (inv_mass + product(0, 0), product(0, 1), inv_mass + product(1, 1));
+    if special {
+        k11 += lanes::<L>(|lane| surface(lane).slip[0]);
+        k22 += lanes::<L>(|lane| surface(lane).slip[1]);
+    }
+    let determinant = k11 * k22 - k12 * k12;
+    let inverse = L::select(L::ZERO.lt(determinant), L::ONE / determinant, L::ZERO);
+    let twist = product(2, 2);
+    let twist_mass = L::select(L::ZERO.lt(twist), L::ONE / twist, L::ZERO);
+    let friction = FrictionRows {
+        angular: rows.map(|row| row.map(store3)),
+        mass: [(k22 * inverse).store(), (-k12 * inverse).store(), (k11 * inverse).store()],
+        twist_mass: twist_mass.store(),
+        impulse: [carried.dot(t1).store(), carried.dot(t2).store(), (head[3] * ratio).store()],
+        mu: lanes::<L>(|lane| surface(lane).mu).store(),
+        radius: (radius * share).store(),
+    };
+
+    let firm = lanes::<L>(|lane| {
+        let fixed = bodies.iter().any(|index| index.as_ref()[lane] == NO_RECORD);
+        if fixed { 1.0 } else { 0.0 }
+    });
+    let firm = L::ZERO.lt(firm);
+    let (soft, hard) = (context.soft, context.firm);
+    let choose = |hard: f32, soft: f32| L::select(firm, L::splat(hard), L::splat(soft)).store();
+    let mut batch = Batch {
+        bodies,
+        normal: store3(normal),
+        tangent: store3(t1),
+        scale: [scales[0][0].store(), scales[1][0].store()],
+        bias_rate: choose(hard.bias_rate, soft.bias_rate),
+        mass_scale: choose(hard.mass_scale, soft.mass_scale),
+        impulse_scale: choose(hard.impulse_scale, soft.impulse_scale),
+        push_out: lanes::<L>(|lane| surface(lane).push_out).store(),
+        points,
+        friction,
+        count: u32::from(most),
+        extra: NO_EXTRA,
+        range: (range.start as u32, range.end as u32),
+    };
+    if special {
+        batch.extra = batches.extras.len() as u32;
+        let sides = Sides {
+            scales,
+            normal,
+            tangents: [t1, t2],
+            arms,
+            present,
+            centre,
+            rolling: Vector3::new(tail[4], tail[5], tail[6]) * ratio,
+            twist,
+        };
+        // Velocities of what no force moves.
+        let motion = |side: usize| {
+            let record = |lane: usize| {
+                let body = manifolds.get(lane).map_or(STATIC, |i| keys[*i as usize].bodies[side]);
+                let kinematic = body != STATIC && !context.bodies.is_movable(body);
+                let list = &context.bodies.motions;
+                if kinematic { list.get(body as usize).unwrap_or(&NOTHING) } else { &NOTHING }
+            };
+            Motion::from_record(L::transpose(record))
+        };
+        let motions = [motion(0), motion(1)];
+        let velocities = bodies.map(|index| {
+            Motion::from_record(L::transpose(|lane| {
+                context.bodies.velocities.get(index.as_ref()[lane] as usize).unwrap_or(&NOTHING)
+            }))
+        });
+        let made: Extra<L> = extra::prepare(&mut batch, &sides, &surface, motions, velocities);
+        batches.extras.push(made);
+    }
+    batches.list.push(batch);
+}

@@ -1,0 +1,47 @@
+//! From rows back to manifolds.
+
+use super::vector::{load3, store3};
+use super::{Batches, Block3};
+use crate::solve::substep::manifold::ContactManifold;
+use core::any::Any;
+use ferrode_math::simd::{Kernel, Lanes};
+
+/// Writes the impulses of all batches into their manifolds.
+pub(super) struct Store<'a> {
+    pub batches: &'a (dyn Any + Send + Sync),
+    pub order: &'a [u32],
+    pub manifolds: &'a mut [ContactManifold],
+}
+
+impl Kernel for Store<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Some(batches) = self.batches.downcast_ref::<Batches<L>>() else { return };
+        for batch in &batches.list {
+            let (n, t1) = (load3::<L>(&batch.normal), load3::<L>(&batch.tangent));
+            let t2 = n.cross(t1);
+            let along = |impulses: [L::Block; 2]| {
+                store3(t1 * L::load(&impulses[0]) + t2 * L::load(&impulses[1]))
+            };
+            let [f1, f2, twist] = batch.friction.impulse;
+            let friction: Block3<L> = along([f1, f2]);
+            let rolling = batches.extras.get(batch.extra as usize).map(|e| along(e.rolling_impulse));
+            let places = &self.order[batch.range.0 as usize..batch.range.1 as usize];
+            for (lane, place) in places.iter().enumerate() {
+                let manifold = &mut self.manifolds[*place as usize];
+                for (record, row) in manifold.points.iter_mut().zip(&batch.points[..batch.count as usize]) {
+                    record.0[7] = row.impulse.as_ref()[lane];
+                }
+                manifold.head.0[3] = twist.as_ref()[lane];
+                for k in 0..3 {
+                    manifold.head.0[4 + k] = friction[k].as_ref()[lane];
+                    if let Some(rolling) = &rolling {
+                        manifold.tail.0[4 + k] = rolling[k].as_ref()[lane];
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,489 @@
+//! `Substep`: thousands of bodies in real time.
+//!
+//! ```text
+//! wake → gather → colour → prepare rows of contacts
+//! n times:   forces and impulses of the substep before → (first: contacts' impulses of the step before)
+//!            → joints write rows → one sweep with bias → positions → one sweep without
+//! restitution → impulses back into the manifolds → velocities and poses → islands to sleep
+//! ```
+//!
+//! That is "Soft Step" (E. Catto, "Solver2D", 2024): small steps instead of many iterations (M. Macklin et al., "Small Steps
+//! in Physics Simulation", SCA 2019), constraints that push back like springs (`soft`), and after each move of the bodies
+//! a sweep without that push, which takes out the velocity that it put in.
+//!
+//! Contacts are linearised once per step, joints write their rows anew in each substep. See docs/substep.md.
+
+mod bodies;
+mod colour;
+mod contact;
+mod joints;
+mod manifold;
+mod settings;
+mod sleep;
+mod soft;
+mod surface;
+
+pub use manifold::{ContactManifold, MANIFOLD_POINTS, ManifoldPoint};
+pub use settings::SubstepSettings;
+pub use soft::Spring;
+
+use crate::arena::NIL;
+use crate::body::BodyKey;
+use crate::foreign::MovedObserver;
+use crate::joint::JointKind;
+use crate::{Error, StepReport, Surface, World};
+use bodies::{SolverBodies, rotation_of};
+use colour::Colouring;
+use contact::{Contacts, ManifoldKey, NOT_SOLVED, Pass};
+use ferrode_math::Vec3;
+use ferrode_math::simd::Level;
+use joints::{JointContext, JointMemory, Joints};
+use manifold::STATIC;
+use surface::SurfaceCoefficients;
+
+/// Memory that is kept from step to step. Only the joints' impulses hold something of the past.
+#[derive(Debug, Default)]
+pub(crate) struct Workspace {
+    memory: Vec<JointMemory>,
+    /// Length of the step before; 0 for none.
+    last_h: f64,
+    bodies: SolverBodies,
+    contacts: Contacts,
+    joints: Joints,
+    colouring: Colouring,
+    surfaces: Vec<SurfaceCoefficients>,
+    /// Dense place and serial of each of the world's bodies.
+    places: Vec<(u32, u32)>,
+    /// Whether forces of the caller's act on a body.
+    pushed: Vec<bool>,
+    joint_seen: Vec<bool>,
+    /// Contact joints as manifolds, their joints and surfaces; with those of the caller in front.
+    loose: Vec<ContactManifold>,
+    loose_joints: Vec<u32>,
+    all: Vec<ContactManifold>,
+    waking: Vec<u64>,
+    sets: sleep::Sets,
+    restless: Vec<bool>,
+}
+
+impl Clone for Workspace {
+    fn clone(&self) -> Self {
+        Self { memory: self.memory.clone(), last_h: self.last_h, ..Self::default() }
+    }
+}
+
+impl World {
+    /// Advances the world by `h` seconds with [`Stepper::Substep`](crate::Stepper::Substep), given what touches.
+    ///
+    /// Manifolds come from the caller's collision detection, with the positions that the bodies have now; the caller
+    /// keeps them for the next step, where points that are the same go on with the impulses that they end with here. Their
+    /// `surface` is a place in `surfaces`. Manifolds of bodies that are no more are passed over. Contact joints work too,
+    /// each as a manifold without a past.
+    ///
+    /// ```
+    /// use ferrode_dynamics::{ContactManifold, ManifoldPoint, Surface, World};
+    /// use ferrode_math::Vec3;
+    /// # fn main() -> Result<(), ferrode_dynamics::Error> {
+    /// let mut world = World::new();
+    /// world.set_gravity(Vec3::new(0.0, 0.0, -9.81))?;
+    /// let ball = world.create_body();
+    /// world.body_mut(ball)?.set_position(Vec3::new(0.0, 0.0, 1.0))?;
+    /// let surfaces = [Surface::with_friction(0.5)];
+    /// let mut manifold = ContactManifold::new(Some(ball), None, 0);
+    /// manifold.set_normal(Vec3::Z);
+    /// for _ in 0..300 {
+    ///     // A ball of radius 0.5 above the plane z = 0.
+    ///     let height = world.body(ball)?.position().z;
+    ///     let impulse = manifold.points().map(|p| p.impulse).sum();
+    ///     manifold.clear();
+    ///     let separation = (height - 0.5) as f32;
+    ///     manifold.push(ManifoldPoint { arm1: [0.0, 0.0, -0.5], arm2: [0.0; 3], separation, impulse });
+    ///     world.step_with_manifolds(1.0 / 60.0, core::slice::from_mut(&mut manifold), &surfaces)?;
+    /// }
+    /// assert!((world.body(ball)?.position().z - 0.5).abs() < 1e-3);
+    /// # Ok(()) }
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a step that is not positive and finite, or a manifold whose surface is not in the list;
+    /// nothing is stepped then.
+    pub fn step_with_manifolds(
+        &mut self,
+        h: f64,
+        manifolds: &mut [ContactManifold],
+        surfaces: &[Surface],
+    ) -> Result<StepReport, Error> {
+        self.step_substep(h, manifolds, surfaces, &mut |_, _| {})
+    }
+
+    pub(crate) fn step_substep(
+        &mut self,
+        h: f64,
+        manifolds: &mut [ContactManifold],
+        surfaces: &[Surface],
+        moved: MovedObserver<'_>,
+    ) -> Result<StepReport, Error> {
+        crate::softness::step_size(h)?;
+        for manifold in manifolds.iter() {
+            manifold::check_surface(manifold, surfaces)?;
+        }
+        let mut report = StepReport::default();
+        let mut work = core::mem::take(&mut self.scratch.substep);
+        self.quarantine_unusable_bodies(&mut report);
+        self.convert_surfaces(h, surfaces, &mut work);
+        self.gather_awake(h, manifolds, &mut work);
+        if work.bodies.len() > 0 {
+            if work.loose.is_empty() {
+                self.solve_substeps(h, manifolds, &mut work);
+            } else {
+                let mut all = core::mem::take(&mut work.all);
+                self.solve_substeps(h, &mut all, &mut work);
+                manifolds.copy_from_slice(&all[..manifolds.len()]);
+                self.write_contact_feedback(h, &all[manifolds.len()..], &work);
+                work.all = all;
+            }
+            report.islands = 1;
+            report.bodies = work.bodies.len();
+            report.rows = work.contacts.row_count() + work.joints.row_count();
+            report.largest_island_rows = report.rows;
+            self.move_awake(h, &mut work, moved, &mut report);
+            self.put_islands_to_sleep(h, &mut work);
+        }
+        work.last_h = h;
+        self.scratch.substep = work;
+        Ok(report)
+    }
+
+    fn convert_surfaces(&self, h: f64, surfaces: &[Surface], work: &mut Workspace) {
+        let ctx = self.step_context(h);
+        let settings = &self.params.substep;
+        let n = f64::from(settings.substeps);
+        work.surfaces.clear();
+        work.surfaces
+            .extend(surfaces.iter().map(|s| SurfaceCoefficients::new(s, &ctx, n, settings.push_out_speed)));
+    }
+
+    /// Wakes what has to be awake, and copies awake bodies, joints and contacts into the workspace.
+    fn gather_awake(&mut self, h: f64, manifolds: &[ContactManifold], work: &mut Workspace) {
+        loop {
+            self.gather_bodies(h, work);
+            self.gather_joints(h, manifolds, work);
+            let all = core::mem::take(&mut work.all);
+            let list = if work.loose.is_empty() { manifolds } else { &all };
+            self.colour_manifolds(list, work);
+            work.all = all;
+            if work.waking.is_empty() {
+                return;
+            }
+            let mut waking = core::mem::take(&mut work.waking);
+            self.wake_islands(&mut waking);
+            work.waking = waking;
+        }
+    }
+
+    fn gather_bodies(&mut self, h: f64, work: &mut Workspace) {
+        // Bodies that were enabled by hand wake those that fell asleep with them.
+        let mut index = self.body_list.first;
+        while index != NIL {
+            let body = self.bodies.at(index);
+            let next = body.next;
+            if body.enabled && body.sleep_group != 0 {
+                self.rouse(index, &mut work.waking);
+            }
+            index = next;
+        }
+        let mut waking = core::mem::take(&mut work.waking);
+        self.wake_islands(&mut waking);
+        work.waking = waking;
+
+        work.bodies.clear();
+        work.pushed.clear();
+        work.places.clear();
+        work.places.resize(self.bodies.capacity(), (NIL, 0));
+        let gravity = self.params.gravity;
+        let mut index = self.body_list.first;
+        while index != NIL {
+            let body = self.bodies.at(index);
+            if body.enabled || body.quarantined {
+                work.places[index as usize] =
+                    (work.bodies.len() as u32, self.bodies.key_of(index).serial as u32);
+                work.pushed.push(body.force != Vec3::ZERO || body.torque != Vec3::ZERO);
+                let mut force = body.force;
+                if body.gravity_mode {
+                    force += gravity * body.mass.mass;
+                }
+                let torque = body.torque + body.gyroscopic(h);
+                work.bodies.push(index, body, force, torque);
+            }
+            index = body.next;
+        }
+    }
+
+    /// Collects the joints of awake bodies. Contact joints become manifolds.
+    fn gather_joints(&mut self, h: f64, manifolds: &[ContactManifold], work: &mut Workspace) {
+        work.joints.clear();
+        work.loose.clear();
+        work.loose_joints.clear();
+        if self.joints.len() == 0 {
+            return;
+        }
+        let ctx = self.step_context(h);
+        let (n, push_out) = (f64::from(self.params.substep.substeps), self.params.substep.push_out_speed);
+        work.joint_seen.clear();
+        work.joint_seen.resize(self.joints.capacity(), false);
+        let mut asleep = Vec::new();
+        for place in 0..work.bodies.len() {
+            if !work.bodies.is_movable(place as u32) {
+                continue;
+            }
+            let mut link = self.bodies.at(work.bodies.slots[place]).first_joint;
+            while link != NIL {
+                let (index, side) = (link >> 1, (link & 1) as usize);
+                let joint = self.joints.at(index);
+                link = joint.nodes[side].next;
+                if core::mem::replace(&mut work.joint_seen[index as usize], true) || !joint.enabled {
+                    continue;
+                }
+                let slots = joint.nodes.map(|node| node.body);
+                let places = slots.map(|slot| if slot == NIL { NIL } else { work.places[slot as usize].0 });
+                let other = slots[1 - side];
+                if other != NIL && places[1 - side] == NIL {
+                    asleep.push(other);
+                    continue;
+                }
+                if let JointKind::Contact(contact) = &joint.kind {
+                    let mut keys = slots.map(|slot| (slot != NIL).then(|| self.body_key(slot)));
+                    let mut centres = keys.map(|key| self.centre(key));
+                    if joint.reverse {
+                        keys.swap(0, 1);
+                        centres.swap(0, 1);
+                    }
+                    let surface = work.surfaces.len() as u32;
+                    work.surfaces.push(SurfaceCoefficients::new(&contact.surface, &ctx, n, push_out));
+                    let mut manifold = ContactManifold::of_contact(keys, centres, &contact.point, surface);
+                    if contact.surface.mode.has(crate::SurfaceMode::FDIR1) {
+                        manifold.set_tangent(contact.fdir1);
+                    }
+                    work.loose.push(manifold);
+                    work.loose_joints.push(index);
+                } else {
+                    work.joints.push(index, places, joint.feedback.is_some());
+                }
+            }
+        }
+        for slot in asleep {
+            self.rouse(slot, &mut work.waking);
+            // The body itself is awake already; something must make the caller gather again.
+            work.waking.push(0);
+        }
+        if !work.loose.is_empty() {
+            work.all.clear();
+            work.all.extend_from_slice(manifolds);
+            work.all.extend_from_slice(&work.loose);
+        }
+    }
+
+    fn centre(&self, key: Option<BodyKey>) -> Vec3 {
+        key.map_or(Vec3::ZERO, |key| self.bodies.at(key.0.index).frame.position)
+    }
+
+    /// Finds the bodies and the colour of each manifold.
+    fn colour_manifolds(&mut self, manifolds: &[ContactManifold], work: &mut Workspace) {
+        work.colouring.begin(work.bodies.len());
+        work.contacts.keys.clear();
+        work.contacts.has_bounce = false;
+        for manifold in manifolds {
+            let mut key = ManifoldKey { bodies: [NIL; 2], sort: NOT_SOLVED };
+            if manifold.count > 0 {
+                let places = manifold.bodies.map(|(slot, serial)| match work.places.get(slot as usize) {
+                    Some((place, s)) if *place != NIL && *s == serial => *place,
+                    _ => NIL,
+                });
+                let movable = places.map(|place| work.bodies.is_movable(place));
+                if movable[0] || movable[1] {
+                    match self.sleeper(manifold, places, work) {
+                        Sleeper::Gone => {}
+                        Sleeper::Asleep(slot) => {
+                            self.rouse(slot, &mut work.waking);
+                            work.waking.push(0);
+                        }
+                        Sleeper::None => {
+                            let coloured = [0, 1].map(|side| movable[side].then_some(places[side]));
+                            let colour = work.colouring.colour(coloured);
+                            let surface = &work.surfaces[manifold.surface as usize];
+                            let kinematic = (0..2).any(|side| places[side] != NIL && !movable[side]);
+                            let special = surface.special || kinematic;
+                            work.contacts.has_bounce |= surface.bounce > 0.0;
+                            key.bodies = places;
+                            key.sort = contact::sort_key(colour, special, manifold.len());
+                        }
+                    }
+                } else if let Some(side) = (0..2).find(|side| places[*side] != NIL)
+                    && work.bodies.motions[places[side] as usize].0 != [0.0; 8]
+                    && let Sleeper::Asleep(slot) = self.sleeper(manifold, places, work)
+                {
+                    // A kinematic body runs into a sleeper.
+                    self.rouse(slot, &mut work.waking);
+                    work.waking.push(0);
+                }
+            }
+            work.contacts.keys.push(key);
+        }
+        work.contacts.arrange();
+    }
+
+    /// Whether the body of a manifold that is not among the awake ones sleeps, or is no more.
+    fn sleeper(&self, manifold: &ContactManifold, places: [u32; 2], work: &Workspace) -> Sleeper {
+        let _ = work;
+        for ((slot, serial), place) in manifold.bodies.into_iter().zip(places) {
+            if slot == STATIC || place != NIL {
+                continue;
+            }
+            let Some(body) = self.bodies.get(slot) else { return Sleeper::Gone };
+            if self.bodies.key_of(slot).serial as u32 != serial {
+                return Sleeper::Gone;
+            }
+            if !body.is_kinematic() && manifold.touches() {
+                return Sleeper::Asleep(slot);
+            }
+        }
+        Sleeper::None
+    }
+
+    fn solve_substeps(&mut self, h: f64, manifolds: &mut [ContactManifold], work: &mut Workspace) {
+        let settings = self.params.substep;
+        let level = settings.lanes.unwrap_or_else(Level::best);
+        let n = f64::from(settings.substeps);
+        let part = h / n;
+        let ratio = if work.last_h > 0.0 { (h / work.last_h) as f32 } else { 1.0 };
+        let Workspace { bodies, contacts, joints, surfaces, memory, .. } = work;
+        let firm = Spring { frequency: 2.0 * settings.contact.frequency, ..settings.contact };
+        contacts.prepare(
+            level,
+            &contact::Context {
+                bodies,
+                manifolds,
+                surfaces,
+                soft: settings.contact.coefficients(part),
+                firm: firm.coefficients(part),
+                ratio,
+            },
+        );
+        let context = JointContext {
+            step: self.step_context(h),
+            substeps: n,
+            soft: settings.joint.coefficients(part),
+            ratio,
+        };
+        joints.begin(bodies, &self.bodies);
+        let dt = part as f32;
+        for i in 0..settings.substeps {
+            bodies.integrate_velocities(dt, i == 0);
+            if i == 0 {
+                contacts.pass(level, Pass::WarmStart, bodies, (dt, 0.0));
+            }
+            joints.rewrite(i == 0, &context, bodies, &self.bodies, &mut self.joints, memory);
+            joints.solve(false, bodies);
+            contacts.pass(level, Pass::Biased, bodies, (dt, dt * i as f32));
+            bodies.integrate_positions(dt);
+            joints.solve(true, bodies);
+            contacts.pass(level, Pass::Relax, bodies, (dt, dt * (i + 1) as f32));
+            joints.sum_feedback();
+        }
+        if contacts.has_bounce {
+            contacts.pass(level, Pass::Restitution, bodies, (dt, h as f32));
+        }
+        contacts.store(level, manifolds);
+        joints.remember(memory, &self.joints);
+        joints.write_feedback(h, &mut self.joints);
+    }
+
+    /// Tells contact joints that ask for it what they pushed with at the end of the step.
+    fn write_contact_feedback(&mut self, h: f64, manifolds: &[ContactManifold], work: &Workspace) {
+        let per_second = f64::from(self.params.substep.substeps) / h;
+        for (manifold, index) in manifolds.iter().zip(&work.loose_joints) {
+            let joint = self.joints.at(*index);
+            if joint.feedback.is_none() {
+                continue;
+            }
+            let force = (manifold.normal() * manifold.normal_impulse() + manifold.friction_impulse()) * per_second;
+            let JointKind::Contact(contact) = &joint.kind else { continue };
+            let point = contact.point.position;
+            let sign = if joint.reverse { -1.0 } else { 1.0 };
+            let centre = joint.nodes.map(|node| {
+                if node.body == NIL { point } else { self.bodies.at(node.body).frame.position }
+            });
+            let two = joint.nodes[1].body != NIL;
+            let joint = self.joints.at_mut(*index);
+            let Some(feedback) = &mut joint.feedback else { continue };
+            feedback.force1 = force * sign;
+            feedback.torque1 = (point - centre[0]).cross(feedback.force1);
+            if two {
+                feedback.force2 = -feedback.force1;
+                feedback.torque2 = (point - centre[1]).cross(feedback.force2);
+            }
+        }
+    }
+
+    /// Velocity, pose, moved callback, damping, cleared accumulators: body after body.
+    fn move_awake(
+        &mut self,
+        h: f64,
+        work: &mut Workspace,
+        observer: MovedObserver<'_>,
+        report: &mut StepReport,
+    ) {
+        let gravity = self.params.gravity;
+        for (place, slot) in work.bodies.slots.iter().enumerate() {
+            // An observer may have destroyed the body.
+            let Some(body) = self.bodies.get_mut(*slot) else { continue };
+            if body.quarantined {
+                continue;
+            }
+            let before = body.frame;
+            let frame = &mut body.frame;
+            if body.inv_mass > 0.0 {
+                let outcome = work.bodies.outcome(place);
+                let force = if body.gravity_mode { body.force + gravity * body.mass.mass } else { body.force };
+                let torque = work.bodies.free_rotation(place, h);
+                frame.linear_velocity += force * (body.inv_mass * h) + outcome.linear;
+                frame.angular_velocity += torque + outcome.angular;
+                frame.position += outcome.displacement;
+                let q = rotation_of(outcome.rotation) * frame.quaternion;
+                frame.quaternion = q.normalized().unwrap_or(q);
+            } else {
+                frame.position += frame.linear_velocity * h;
+                let q = rotation_of(frame.angular_velocity * h) * frame.quaternion;
+                frame.quaternion = q.normalized().unwrap_or(q);
+            }
+            frame.rotation = frame.quaternion.to_matrix();
+            body.pose_version = body.pose_version.wrapping_add(1);
+            crate::integrate::limit_angular_speed(body);
+            let key = self.body_key(*slot);
+            let body = self.bodies.at_mut(*slot);
+            if let Some(moved) = body.moved.clone() {
+                moved(key, body);
+            }
+            observer(self, key);
+            let Ok(body) = self.body_mut(key) else { continue };
+            let damping = body.damping;
+            damping.apply(&mut body.frame.linear_velocity, &mut body.frame.angular_velocity);
+            body.force = Vec3::ZERO;
+            body.torque = Vec3::ZERO;
+            if !body.is_finite() {
+                body.quarantine(Some(&before));
+                report.quarantined.push(key);
+            }
+        }
+    }
+}
+
+/// What became of a body that is not among the awake ones.
+enum Sleeper {
+    /// There is none, or it counts as a part of the static world.
+    None,
+    /// It sleeps, and is touched.
+    Asleep(u32),
+    /// It was destroyed.
+    Gone,
+}
