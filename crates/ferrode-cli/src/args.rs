@@ -111,7 +111,8 @@ pub struct DemoArgs {
 }
 
 /// The steppers by the names they have here.
-pub const STEPPERS: [(&str, Stepper); 2] = [("direct", Stepper::Direct), ("quick", Stepper::Quick)];
+pub const STEPPERS: [(&str, Stepper); 3] =
+    [("direct", Stepper::Direct), ("quick", Stepper::Quick), ("substep", Stepper::Substep)];
 
 /// The name of a stepper.
 pub fn stepper_name(stepper: Stepper) -> &'static str {

@@ -88,6 +88,8 @@ pub struct World {
     pub(crate) params: Params,
     pub(crate) random: OdeRandom,
     pub(crate) user_data: u64,
+    /// Counts changes of what joints link, contacts aside.
+    pub(crate) topology_version: u64,
     /// Numbers given to groups of bodies that fell asleep together.
     pub(crate) sleep_groups: u64,
     pub(crate) scratch: Scratch,
@@ -111,6 +113,7 @@ impl World {
             params: Params::default(),
             random: OdeRandom::default(),
             user_data: 0,
+            topology_version: 0,
             sleep_groups: 0,
             scratch: Scratch::default(),
         }
@@ -534,7 +537,19 @@ impl World {
         Ok(())
     }
 
+    /// A number that changes whenever a joint other than a contact is attached to a body or taken off it.
+    pub fn topology_version(&self) -> u64 {
+        self.topology_version
+    }
+
+    fn note_topology(&mut self, joint: u32) {
+        if self.joints.at(joint).kind.joint_type() != JointType::Contact {
+            self.topology_version += 1;
+        }
+    }
+
     fn push_link(&mut self, link: Link, body: u32) {
+        self.note_topology(link >> 1);
         let next = self.bodies.at(body).first_joint;
         self.joints.at_mut(link >> 1).nodes[(link & 1) as usize] = Node { body, next, prev: NIL };
         if next != NIL {
@@ -552,6 +567,7 @@ impl World {
             if node.body == NIL {
                 continue;
             }
+            self.note_topology(joint);
             let body = self.bodies.at_mut(node.body);
             body.joint_count -= 1;
             unlink(node.prev, node.next, &mut body.first_joint, |link, prev, next| {

@@ -43,7 +43,7 @@ pub struct TouchingContact {
     pub point: ContactPoint,
     /// Force on the first body in the last step, in newtons, world frame.
     pub force: Vec3,
-    pub(crate) joint: ferrode_dynamics::JointKey,
+    pub(crate) joint: Option<ferrode_dynamics::JointKey>,
 }
 
 impl World {
@@ -113,7 +113,7 @@ impl World {
     }
 
     /// Whether a joint keeps the two bodies from colliding.
-    fn are_joined(&self, a: &GeomInfo, b: &GeomInfo) -> Result<bool, Error> {
+    pub(crate) fn are_joined(&self, a: &GeomInfo, b: &GeomInfo) -> Result<bool, Error> {
         // A joint to the static world says nothing about the ground's geoms.
         let (Some(body_a), Some(body_b)) = (a.body, b.body) else { return Ok(false) };
         let mut joints = self.dynamics.connecting_joints(Some(body_a), Some(body_b))?;
@@ -124,7 +124,7 @@ impl World {
     }
 
     /// The surface between two geoms; `None` if they pass through each other.
-    fn pair_surface(&self, a: &GeomInfo, b: &GeomInfo) -> Option<Surface> {
+    pub(crate) fn pair_surface(&self, a: &GeomInfo, b: &GeomInfo) -> Option<Surface> {
         if !self.pair_surfaces.is_empty()
             && let Some(surface) = self.pair_surfaces.get(&(a.key.min(b.key), a.key.max(b.key)))
         {
@@ -158,7 +158,7 @@ impl World {
             second: ContactOwner { geom: b.key, body: b.body, side: found.side2 },
             point: found.point,
             force: Vec3::ZERO,
-            joint,
+            joint: Some(joint),
         });
         Ok(())
     }
@@ -177,7 +177,9 @@ impl World {
     /// Takes the forces of the step just made, and destroys its contact joints.
     pub(crate) fn finish_contacts(&mut self) -> Result<(), Error> {
         for contact in &mut self.contacts {
-            if let Some(feedback) = self.dynamics.joint_feedback(contact.joint)? {
+            if let Some(joint) = contact.joint
+                && let Some(feedback) = self.dynamics.joint_feedback(joint)?
+            {
                 // A contact of the static world with a body is turned round inside; its force is on the body.
                 let on_body = feedback.force1;
                 contact.force = if contact.first.body.is_some() { on_body } else { -on_body };

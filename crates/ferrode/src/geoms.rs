@@ -19,6 +19,8 @@ pub struct GeomInfo {
     pub user_data: u64,
     /// The pose version of the body that the geom was last moved to.
     pub(crate) seen_pose: Option<u64>,
+    /// Changed by hand since `Substep` last looked.
+    pub(crate) changed: bool,
 }
 
 impl World {
@@ -64,7 +66,15 @@ impl World {
     fn insert_geom(&mut self, geom: Geom, body: Option<BodyKey>) -> Result<GeomKey, Error> {
         let slot = self.free_geom_slots.pop().unwrap_or(self.geom_infos.len());
         let key = self.colliders.add_geom(Some(self.space), geom.with_user(slot as u64))?;
-        let info = GeomInfo { key, body, material: self.default_material, user_data: 0, seen_pose: None };
+        let info = GeomInfo {
+            key,
+            body,
+            material: self.default_material,
+            user_data: 0,
+            seen_pose: None,
+            changed: true,
+        };
+        self.geom_version += 1;
         match self.geom_infos.get_mut(slot) {
             Some(place) => *place = Some(info),
             None => self.geom_infos.push(Some(info)),
@@ -78,6 +88,8 @@ impl World {
     /// [`Error::Collider`] for a key that names no geom.
     pub fn remove_geom(&mut self, geom: GeomKey) -> Result<(), Error> {
         let slot = self.geom_slot(geom)?;
+        self.wake_touching(slot);
+        self.geom_version += 1;
         self.colliders.remove_geom(geom);
         if let Some(info) = self.geom_infos[slot].take()
             && let Some(body) = info.body
@@ -148,7 +160,11 @@ impl World {
     /// [`Error::Collider`] for a key that names no geom, [`Error::Dynamics`] naming the first unusable number.
     pub fn set_material(&mut self, geom: GeomKey, material: Material) -> Result<(), Error> {
         material.check()?;
-        self.geom_info_mut(geom)?.material = material;
+        let info = self.geom_info_mut(geom)?;
+        info.material = material;
+        info.changed = true;
+        self.rules_version += 1;
+        self.geom_version += 1;
         Ok(())
     }
 
@@ -167,7 +183,8 @@ impl World {
     /// # Errors
     /// [`Error::Collider`] for a key that names no geom.
     pub fn set_geom_bits(&mut self, geom: GeomKey, category: u64, collide: u64) -> Result<(), Error> {
-        Ok(self.colliders.set_bits(geom, category, collide)?)
+        self.colliders.set_bits(geom, category, collide)?;
+        self.note_geom(geom)
     }
 
     /// Switches a geom on or off.
@@ -175,7 +192,8 @@ impl World {
     /// # Errors
     /// [`Error::Collider`] for a key that names no geom.
     pub fn set_geom_enabled(&mut self, geom: GeomKey, enabled: bool) -> Result<(), Error> {
-        Ok(self.colliders.set_enabled(geom, enabled)?)
+        self.colliders.set_enabled(geom, enabled)?;
+        self.note_geom(geom)
     }
 
     /// Moves a geom: a static one to a world pose, one of a body to a pose in the body's frame.
@@ -192,6 +210,15 @@ impl World {
             None => self.colliders.set_pose(geom, pose)?,
             Some(_) => self.colliders.set_offset(geom, Some(pose))?,
         }
+        self.note_geom(geom)
+    }
+
+    /// Has `Substep` look at a geom anew that was changed by hand, and wakes what rests on it.
+    fn note_geom(&mut self, geom: GeomKey) -> Result<(), Error> {
+        self.geom_version += 1;
+        let slot = self.geom_slot(geom)?;
+        self.geom_info_mut(geom)?.changed = true;
+        self.wake_touching(slot);
         Ok(())
     }
 

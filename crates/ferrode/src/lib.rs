@@ -14,6 +14,7 @@ mod joints;
 mod material;
 mod query;
 mod step;
+mod substep;
 mod world;
 
 /// Shapes, contacts, spaces and ray casts, without bodies.
@@ -37,8 +38,8 @@ pub use ferrode_dynamics::{
     AMotor, AMotorMode, AutoDisable, AxisFrame, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping,
     DirectMethod, DirectSettings, FiniteRotation, Fixed, GroupKey, Hinge, Hinge2, IslandSolve, JointError,
     JointFeedback, JointKey, JointType, LMotor, LimitMotor, LimitState, Mass, Null, PR, PU, Param, Piston,
-    Plane2D, QuickSettings, Slider, Softness, StepReport, Stepper, Surface, SurfaceMode, Transmission,
-    TransmissionMode, Universal,
+    Plane2D, QuickSettings, Slider, Softness, Spring, StepReport, Stepper, SubstepSettings, Surface,
+    SurfaceMode, Transmission, TransmissionMode, Universal,
 };
 pub use ferrode_math::{Aabb, ContactPoint, Mat3, Pose, Quat, Vec3};
 pub use fixed_step::FixedStep;

@@ -1,7 +1,7 @@
 //! One step of a world with shapes.
 
 use crate::{Error, World};
-use ferrode_dynamics::StepReport;
+use ferrode_dynamics::{StepReport, Stepper};
 
 /// What happened in a step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,12 +20,19 @@ pub struct Step {
 impl World {
     /// Advances the world by `h` seconds: broad phase → narrow phase → contact joints → step → events.
     ///
+    /// With [`Stepper::Substep`] pairs and contacts are kept from step to step, no contact joints are made, and geoms' poses
+    /// in [`World::colliders`] follow their bodies only when [`World::sync_geoms`] or [`World::queries`] asks them to.
+    ///
     /// Keep `h` constant; see [`FixedStep`](crate::FixedStep).
     ///
     /// # Errors
     /// [`Error::Dynamics`] for a step that is not positive and finite; nothing is stepped then.
     pub fn step(&mut self, h: f64) -> Result<Step, Error> {
         self.dynamics.impulse_to_force(h, ferrode_math::Vec3::ZERO)?;
+        self.last_h = h;
+        if self.stepper == Stepper::Substep {
+            return self.step_substep(h);
+        }
         let mut scratch = core::mem::take(&mut self.scratch);
         let result = self.step_with(h, &mut scratch);
         self.scratch = scratch;
@@ -33,6 +40,7 @@ impl World {
     }
 
     fn step_with(&mut self, h: f64, scratch: &mut crate::world::Scratch) -> Result<Step, Error> {
+        self.lazy_contacts.take();
         self.sync_geoms();
         self.find_pairs(scratch)?;
         self.make_contacts(scratch)?;
@@ -50,7 +58,7 @@ impl World {
     }
 
     /// Counts the step. The times are summed with compensation (Kahan, 1965), so that a thousand steps of 1 ms are 1 s.
-    fn advance_clock(&mut self, h: f64) {
+    pub(crate) fn advance_clock(&mut self, h: f64) {
         let step = h - self.time_rest;
         let sum = self.time + step;
         self.time_rest = (sum - self.time) - step;

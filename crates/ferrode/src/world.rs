@@ -5,6 +5,7 @@ use core::ops::{Deref, DerefMut};
 use ferrode_collide::{Colliders, GeomContact, GeomKey, SpaceKey, SpaceKind};
 use ferrode_dynamics::{BodyKey, GroupKey, JointKey, Stepper, Surface};
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
 /// A world of bodies with shapes.
 ///
@@ -42,6 +43,16 @@ pub struct World {
     pub(crate) time_rest: f64,
     pub(crate) steps: u64,
     pub(crate) scratch: Scratch,
+    /// What `Substep` keeps of the shapes, once it has stepped.
+    pub(crate) pipeline: Option<Box<crate::substep::Pipeline>>,
+    /// Contacts of a step of `Substep`, made when they are asked for.
+    pub(crate) lazy_contacts: OnceLock<Vec<TouchingContact>>,
+    /// Length of the last step.
+    pub(crate) last_h: f64,
+    /// Counts changes of the geoms by hand.
+    pub(crate) geom_version: u64,
+    /// Counts changes of what decides about surfaces.
+    pub(crate) rules_version: u64,
 }
 
 /// Memory kept from step to step; holds no state.
@@ -117,6 +128,11 @@ impl World {
             time_rest: 0.0,
             steps: 0,
             scratch: Scratch::default(),
+            pipeline: None,
+            lazy_contacts: OnceLock::new(),
+            last_h: 1.0,
+            geom_version: 0,
+            rules_version: 0,
         })
     }
 
@@ -202,11 +218,13 @@ impl World {
     /// Sets how two materials become the surface of a contact.
     pub fn set_combine_rules(&mut self, rules: CombineRules) {
         self.rules = rules;
+        self.rules_version += 1;
     }
 
     /// Sets how friction coefficients are combined.
     pub fn set_friction_rule(&mut self, rule: Combine) {
         self.rules.friction = rule;
+        self.rules_version += 1;
     }
 
     /// Sets what two geoms do to each other, whatever their materials: a surface of its own, or `None` to let them pass
@@ -226,12 +244,14 @@ impl World {
             surface.check()?;
         }
         self.pair_surfaces.insert((a.min(b), a.max(b)), surface);
+        self.rules_version += 1;
         Ok(())
     }
 
     /// Undoes [`World::set_pair_surface`].
     pub fn clear_pair_surface(&mut self, a: GeomKey, b: GeomKey) {
         self.pair_surfaces.remove(&(a.min(b), a.max(b)));
+        self.rules_version += 1;
     }
 
     /// Lets the two bodies of a joint collide with each other; by default they don't.
@@ -240,6 +260,7 @@ impl World {
     /// [`Error::Dynamics`] for a key that names no joint.
     pub fn set_joined_bodies_collide(&mut self, joint: JointKey, collide: bool) -> Result<(), Error> {
         self.dynamics.joint_type(joint)?;
+        self.rules_version += 1;
         if collide {
             self.joined_collide.insert(joint, true);
         } else {
@@ -280,6 +301,9 @@ impl World {
 
     /// The contacts of the last step.
     pub fn contacts(&self) -> &[TouchingContact] {
+        if self.stepper == Stepper::Substep {
+            return self.lazy_contacts.get_or_init(|| self.substep_contacts());
+        }
         &self.contacts
     }
 

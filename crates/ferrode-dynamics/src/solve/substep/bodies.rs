@@ -118,8 +118,7 @@ impl SolverBodies {
     pub fn outcome(&self, body: usize) -> Outcome {
         let (u, reference) = (&self.velocities[body].0, &self.references[body].0);
         let total = &self.totals[body].0;
-        let change: [f64; 6] =
-            core::array::from_fn(|k| f64::from(total[k]) + f64::from(u[k] - reference[k]));
+        let change: [f64; 6] = core::array::from_fn(|k| f64::from(total[k]) + f64::from(u[k] - reference[k]));
         let delta = self.deltas[body].0.map(f64::from);
         let scale = self.scales[body].0.map(f64::from);
         let s = scale[0];
@@ -143,10 +142,7 @@ impl SolverBodies {
         let u = self.velocities[body].0.map(f64::from);
         let scale = self.scales[body].0.map(f64::from);
         let factor = [scale[1], scale[2], scale[3], scale[4], scale[5], scale[6]];
-        (
-            Vec3::new(u[0], u[1], u[2]) * scale[0],
-            mul_lower(&factor, Vec3::new(u[3], u[4], u[5])),
-        )
+        (Vec3::new(u[0], u[1], u[2]) * scale[0], mul_lower(&factor, Vec3::new(u[3], u[4], u[5])))
     }
 
     /// What torques that are no constraint's do to a body's angular velocity in `h` seconds.

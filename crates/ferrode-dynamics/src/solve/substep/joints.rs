@@ -6,12 +6,12 @@
 
 use super::bodies::{SolverBodies, mul_lower_transpose, rotation_of};
 use super::soft::Coefficients;
+use crate::Softness;
 use crate::arena::{Arena, NIL};
 use crate::body::Body;
 use crate::ends::{Ends, Frame, StepContext};
 use crate::joint::Joint;
 use crate::rows::{JointRows, Row, RowKind, Wrench};
-use crate::Softness;
 use ferrode_math::Vec3;
 
 /// Slots of a joint whose impulses are remembered.
@@ -197,7 +197,10 @@ impl Joints {
                     made.impulse = if first {
                         remembered.impulses.get(slot).map_or(0.0, |x| x * context.ratio)
                     } else {
-                        self.before[old.clone()].iter().find(|b| b.slot == row.slot).map_or(0.0, |b| b.impulse)
+                        self.before[old.clone()]
+                            .iter()
+                            .find(|b| b.slot == row.slot)
+                            .map_or(0.0, |b| b.impulse)
                     };
                     made.impulse = made.impulse.max(made.lo).min(made.hi);
                     apply(&made.jacobian, made.impulse, constraint.bodies, bodies);
@@ -331,10 +334,8 @@ impl JointRow {
             let (l, a) = (linear * s[0], mul_lower_transpose(&[s[1], s[2], s[3], s[4], s[5], s[6]], angular));
             [l.x, l.y, l.z, a.x, a.y, a.z].map(|x| x as f32)
         };
-        let jacobian = [
-            scaled(places[0], row.linear1, row.angular1),
-            scaled(places[1], row.linear2, row.angular2),
-        ];
+        let jacobian =
+            [scaled(places[0], row.linear1, row.angular1), scaled(places[1], row.linear2, row.angular2)];
         // Bodies that move but can't be moved, and their part of J v.
         let drift = |place: u32, linear: Vec3, angular: Vec3| match bodies.motions.get(place as usize) {
             Some(motion) if !bodies.is_movable(place) => {
@@ -417,14 +418,11 @@ impl JointConstraint {
         for i in 0..n {
             for j in 0..=i {
                 let mut sum = l[i][j];
-                for k in 0..j {
-                    sum -= l[i][k] * l[j][k];
+                let (row, other) = (l[i], l[j]);
+                for (x, y) in row[..j].iter().zip(&other[..j]) {
+                    sum -= x * y;
                 }
-                l[i][j] = if i == j {
-                    if sum > 0.0 { 1.0 / sum.sqrt() } else { 0.0 }
-                } else {
-                    sum * l[j][j]
-                };
+                l[i][j] = if i == j { if sum > 0.0 { 1.0 / sum.sqrt() } else { 0.0 } } else { sum * l[j][j] };
             }
         }
         // K⁻¹ = L⁻ᵀ L⁻¹; the diagonal of `l` holds reciprocals.

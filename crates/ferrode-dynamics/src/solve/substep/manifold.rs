@@ -40,6 +40,9 @@ pub struct ContactManifold {
     pub(super) count: u8,
 }
 
+/// The surface of a manifold that nothing comes of.
+const IGNORED: u32 = u32::MAX;
+
 /// The slot of no body: the static world.
 pub(super) const STATIC: u32 = u32::MAX;
 
@@ -92,6 +95,21 @@ impl ContactManifold {
         self.tail.0[..3].copy_from_slice(&to_f32(tangent));
     }
 
+    /// As [`Self::set_normal`], in single precision.
+    pub fn set_normal_f32(&mut self, normal: [f32; 3]) {
+        self.head.0[..3].copy_from_slice(&normal);
+    }
+
+    /// A manifold that nothing comes of, whatever points it has.
+    pub fn ignored() -> Self {
+        Self { surface: IGNORED, ..Self::new(None, None, 0) }
+    }
+
+    /// Whether it is one that nothing comes of.
+    pub fn is_ignored(&self) -> bool {
+        self.surface == IGNORED
+    }
+
     /// The surface's place in the list that is handed to the step.
     pub fn surface(&self) -> u32 {
         self.surface
@@ -135,6 +153,41 @@ impl ContactManifold {
         true
     }
 
+    /// Takes over points and all impulses.
+    pub fn carry_over(&mut self, before: &Self) {
+        (self.points, self.count) = (before.points, before.count);
+        (self.head, self.tail) = (before.head, before.tail);
+    }
+
+    /// Gives impulses of points that `before` had, and that have no successor of the same impulse here, to the nearest
+    /// points that have none yet. What a face bears it goes on bearing, whatever its corners are called.
+    pub fn adopt(&mut self, before: &Self) {
+        let count = self.len();
+        let turned = (0..3).map(|k| self.head.0[k] * before.head.0[k]).sum::<f32>() < 0.9;
+        if turned || self.points[..count].iter().all(|r| r.0[7] > 0.0) {
+            return;
+        }
+        for old in before.points[..before.len()].iter().filter(|r| r.0[7] > 0.0) {
+            if self.points[..count].iter().any(|r| r.0[7] == old.0[7]) {
+                continue;
+            }
+            let distance = |r: &Record| {
+                let [a, b, c] = [r.0[0] - old.0[0], r.0[1] - old.0[1], r.0[2] - old.0[2]];
+                a * a + b * b + c * c
+            };
+            let mut nearest: Option<(f32, usize)> = None;
+            for (i, r) in self.points[..count].iter().enumerate().filter(|(_, r)| r.0[7] == 0.0) {
+                let d = distance(r);
+                if nearest.is_none_or(|n| d < n.0) {
+                    nearest = Some((d, i));
+                }
+            }
+            if let Some((_, i)) = nearest {
+                self.points[i].0[7] = old.0[7];
+            }
+        }
+    }
+
     /// Takes over the impulses of friction from the manifold of the step before.
     pub fn carry_friction(&mut self, before: &Self) {
         self.head.0[3..].copy_from_slice(&before.head.0[3..]);
@@ -173,7 +226,7 @@ pub(super) fn to_f32(v: Vec3) -> [f32; 3] {
 
 /// The error of a manifold that names a surface that there is none of.
 pub(super) fn check_surface(manifold: &ContactManifold, surfaces: &[Surface]) -> Result<(), Error> {
-    if (manifold.surface as usize) < surfaces.len() {
+    if (manifold.surface as usize) < surfaces.len() || manifold.count == 0 || manifold.is_ignored() {
         return Ok(());
     }
     Err(Error::OutOfRange {

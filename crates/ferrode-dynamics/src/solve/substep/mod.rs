@@ -294,7 +294,7 @@ impl World {
         work.contacts.has_bounce = false;
         for manifold in manifolds {
             let mut key = ManifoldKey { bodies: [NIL; 2], sort: NOT_SOLVED };
-            if manifold.count > 0 {
+            if manifold.count > 0 && !manifold.is_ignored() {
                 let places = manifold.bodies.map(|(slot, serial)| match work.places.get(slot as usize) {
                     Some((place, s)) if *place != NIL && *s == serial => *place,
                     _ => NIL,
@@ -357,7 +357,6 @@ impl World {
         let part = h / n;
         let ratio = if work.last_h > 0.0 { (h / work.last_h) as f32 } else { 1.0 };
         let Workspace { bodies, contacts, joints, surfaces, memory, .. } = work;
-        let firm = Spring { frequency: 2.0 * settings.contact.frequency, ..settings.contact };
         contacts.prepare(
             level,
             &contact::Context {
@@ -365,7 +364,6 @@ impl World {
                 manifolds,
                 surfaces,
                 soft: settings.contact.coefficients(part),
-                firm: firm.coefficients(part),
                 ratio,
             },
         );
@@ -406,13 +404,14 @@ impl World {
             if joint.feedback.is_none() {
                 continue;
             }
-            let force = (manifold.normal() * manifold.normal_impulse() + manifold.friction_impulse()) * per_second;
+            let force =
+                (manifold.normal() * manifold.normal_impulse() + manifold.friction_impulse()) * per_second;
             let JointKind::Contact(contact) = &joint.kind else { continue };
             let point = contact.point.position;
             let sign = if joint.reverse { -1.0 } else { 1.0 };
-            let centre = joint.nodes.map(|node| {
-                if node.body == NIL { point } else { self.bodies.at(node.body).frame.position }
-            });
+            let centre = joint
+                .nodes
+                .map(|node| if node.body == NIL { point } else { self.bodies.at(node.body).frame.position });
             let two = joint.nodes[1].body != NIL;
             let joint = self.joints.at_mut(*index);
             let Some(feedback) = &mut joint.feedback else { continue };
@@ -444,7 +443,8 @@ impl World {
             let frame = &mut body.frame;
             if body.inv_mass > 0.0 {
                 let outcome = work.bodies.outcome(place);
-                let force = if body.gravity_mode { body.force + gravity * body.mass.mass } else { body.force };
+                let force =
+                    if body.gravity_mode { body.force + gravity * body.mass.mass } else { body.force };
                 let torque = work.bodies.free_rotation(place, h);
                 frame.linear_velocity += force * (body.inv_mass * h) + outcome.linear;
                 frame.angular_velocity += torque + outcome.angular;

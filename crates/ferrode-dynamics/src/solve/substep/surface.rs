@@ -93,10 +93,8 @@ impl SurfaceCoefficients {
             ],
             softness,
             layer: s.surface_layer.unwrap_or(ctx.contact_surface_layer) as f32,
-            push_out: s
-                .max_correcting_velocity
-                .unwrap_or(ctx.contact_max_correcting_velocity)
-                .min(push_out) as f32,
+            push_out: s.max_correcting_velocity.unwrap_or(ctx.contact_max_correcting_velocity).min(push_out)
+                as f32,
         };
         let plain_cone = out.mu == out.mu2 && (out.mu == 0.0 || !(limited[0] || limited[1]));
         let special = !plain_cone

@@ -90,16 +90,14 @@ pub(super) fn prepare<'s, L: Lanes>(
         .store(),
     };
     let roll = |axis: usize| move |s: &SurfaceCoefficients| s.rolling.map_or(0.0, |r| r[axis]);
-    let rows = sides.tangents.map(|t| {
-        [mul_lower_transpose(&sides.scales[0], t), -mul_lower_transpose(&sides.scales[1], t)]
-    });
+    let rows = sides
+        .tangents
+        .map(|t| [mul_lower_transpose(&sides.scales[0], t), -mul_lower_transpose(&sides.scales[1], t)]);
     let rolling_mass = rows.map(|row| {
         let k = row[0].length_squared() + row[1].length_squared();
         L::select(L::ZERO.lt(k), L::ONE / k, L::ZERO).store()
     });
-    let own = |f: &dyn Fn((f32, f32)) -> f32| {
-        lanes::<L>(|lane| surface(lane).softness.map_or(-1.0, f))
-    };
+    let own = |f: &dyn Fn((f32, f32)) -> f32| lanes::<L>(|lane| surface(lane).softness.map_or(-1.0, f));
     let (rate, gamma) = (own(&|s| s.0), own(&|s| s.1));
     batch.bias_rate = L::select(L::ZERO.le(rate), rate, L::load(&batch.bias_rate)).store();
     // With γ the scales follow from each row's mass; 1 and 0 stand for a hard contact.

@@ -139,10 +139,7 @@ pub(super) struct Context<'a> {
     pub bodies: &'a SolverBodies,
     pub manifolds: &'a [ContactManifold],
     pub surfaces: &'a [SurfaceCoefficients],
-    /// Of contacts between movable bodies.
     pub soft: Coefficients,
-    /// Of contacts with what can't move.
-    pub firm: Coefficients,
     /// Of this step to the one before, in length: impulses carried over grow with it.
     pub ratio: f32,
 }

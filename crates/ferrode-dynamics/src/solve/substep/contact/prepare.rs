@@ -6,8 +6,8 @@ use super::{Batch, Batches, Context, FrictionRows, ManifoldKey, NO_EXTRA, PointR
 use crate::solve::substep::manifold::{MANIFOLD_POINTS, STATIC};
 use crate::solve::substep::surface::SurfaceCoefficients;
 use core::ops::Range;
-use ferrode_math::simd::{Lanes, NO_RECORD, Record};
 use ferrode_math::Vector3;
+use ferrode_math::simd::{Lanes, NO_RECORD, Record};
 
 static NOTHING: Record = Record::ZERO;
 static NO_SURFACE: SurfaceCoefficients = SurfaceCoefficients::NONE;
@@ -25,8 +25,6 @@ pub(super) struct Sides<L: Lanes> {
     pub centre: [Vector3<L>; 2],
     /// Rolling impulse carried over.
     pub rolling: Vector3<L>,
-    /// J̃ J̃ᵀ of the row about the normal.
-    pub twist: L,
 }
 
 /// Adds the batch of the manifolds `order[range]`.
@@ -41,8 +39,7 @@ pub(super) fn push_batch<L: Lanes>(
 ) {
     let manifolds = &order[range.clone()];
     let manifold = |lane: usize| manifolds.get(lane).map(|i| &context.manifolds[*i as usize]);
-    let surface =
-        |lane: usize| manifold(lane).map_or(&NO_SURFACE, |m| &context.surfaces[m.surface as usize]);
+    let surface = |lane: usize| manifold(lane).map_or(&NO_SURFACE, |m| &context.surfaces[m.surface as usize]);
     let mut bodies = [L::Index::default(); 2];
     for (side, index) in bodies.iter_mut().enumerate() {
         for (lane, i) in index.as_mut().iter_mut().enumerate() {
@@ -140,21 +137,15 @@ pub(super) fn push_batch<L: Lanes>(
         radius: (radius * share).store(),
     };
 
-    let firm = lanes::<L>(|lane| {
-        let fixed = bodies.iter().any(|index| index.as_ref()[lane] == NO_RECORD);
-        if fixed { 1.0 } else { 0.0 }
-    });
-    let firm = L::ZERO.lt(firm);
-    let (soft, hard) = (context.soft, context.firm);
-    let choose = |hard: f32, soft: f32| L::select(firm, L::splat(hard), L::splat(soft)).store();
+    let soft = context.soft;
     let mut batch = Batch {
         bodies,
         normal: store3(normal),
         tangent: store3(t1),
         scale: [scales[0][0].store(), scales[1][0].store()],
-        bias_rate: choose(hard.bias_rate, soft.bias_rate),
-        mass_scale: choose(hard.mass_scale, soft.mass_scale),
-        impulse_scale: choose(hard.impulse_scale, soft.impulse_scale),
+        bias_rate: L::splat(soft.bias_rate).store(),
+        mass_scale: L::splat(soft.mass_scale).store(),
+        impulse_scale: L::splat(soft.impulse_scale).store(),
         push_out: lanes::<L>(|lane| surface(lane).push_out).store(),
         points,
         friction,
@@ -172,7 +163,6 @@ pub(super) fn push_batch<L: Lanes>(
             present,
             centre,
             rolling: Vector3::new(tail[4], tail[5], tail[6]) * ratio,
-            twist,
         };
         // Velocities of what no force moves.
         let motion = |side: usize| {

@@ -22,9 +22,8 @@ impl Kernel for Store<'_> {
         for batch in &batches.list {
             let (n, t1) = (load3::<L>(&batch.normal), load3::<L>(&batch.tangent));
             let t2 = n.cross(t1);
-            let along = |impulses: [L::Block; 2]| {
-                store3(t1 * L::load(&impulses[0]) + t2 * L::load(&impulses[1]))
-            };
+            let along =
+                |impulses: [L::Block; 2]| store3(t1 * L::load(&impulses[0]) + t2 * L::load(&impulses[1]));
             let [f1, f2, twist] = batch.friction.impulse;
             let friction: Block3<L> = along([f1, f2]);
             let rolling = batches.extras.get(batch.extra as usize).map(|e| along(e.rolling_impulse));

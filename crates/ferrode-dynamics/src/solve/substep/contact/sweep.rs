@@ -6,8 +6,8 @@ use super::{Batch, Batches, Pass, restitution};
 use crate::solve::substep::bodies::SolverBodies;
 use core::any::Any;
 use core::cell::Cell;
-use ferrode_math::simd::{Kernel, Lanes, Record};
 use ferrode_math::Vector3;
+use ferrode_math::simd::{Kernel, Lanes, Record};
 
 /// One pass over all batches.
 pub(super) struct Sweep<'a> {

@@ -1,0 +1,164 @@
+//! Geoms of the pair cache follow the bodies.
+
+use super::Pipeline;
+use super::continuous::Fast;
+use crate::{GeomInfo, World};
+use ferrode_collide::pairs::Motion;
+use ferrode_collide::{Frame, GeomKey};
+use ferrode_dynamics::BodyKey;
+use ferrode_math::Pose;
+
+/// What is known of a geom in the cache.
+#[derive(Clone, Debug)]
+pub(super) struct Known {
+    key: GeomKey,
+    pub body: Option<BodyKey>,
+    offset: Option<Pose>,
+    /// Of the body, when the geom last followed it.
+    pose_version: u64,
+    motion: Motion,
+    /// From the body's centre to the geom's origin, along the world's axes.
+    pub arm: [f32; 3],
+    /// Distance that the geom may move in a step before it could pass through something.
+    thickness: f32,
+    /// Whether its material has a friction direction.
+    pub directed: bool,
+    ahead: f32,
+}
+
+impl World {
+    /// Brings the cache's geoms to where the bodies are, and notes bodies that move too far in one step.
+    pub(super) fn follow_bodies(&mut self, h: f64, pipeline: &mut Pipeline) {
+        if pipeline.seen_geoms != Some(self.geom_version) {
+            pipeline.seen_geoms = Some(self.geom_version);
+            self.take_geoms_in(pipeline);
+        }
+        pipeline.fast.clear();
+        let margin = pipeline.pairs.settings().margin;
+        for (slot, known) in pipeline.known.iter_mut().enumerate() {
+            let Some(known) = known else { continue };
+            let Some(key) = known.body else { continue };
+            let Ok(body) = self.dynamics.body(key) else { continue };
+            let slot = slot as u32;
+            let awake = body.is_enabled() && !body.is_quarantined();
+            if known.motion != Motion::Fixed && awake != (known.motion == Motion::Awake) {
+                known.motion = if awake { Motion::Awake } else { Motion::Asleep };
+                pipeline.pairs.set_awake(slot, awake);
+            }
+            if body.is_kinematic() != (known.motion == Motion::Fixed) {
+                // It became kinematic, or dynamic again.
+                known.motion = motion_of(body);
+                if let (Some(shape), Some(frame)) =
+                    (pipeline.pairs.shape(slot).cloned(), pipeline.pairs.frame(slot).copied())
+                {
+                    pipeline.pairs.insert(slot, shape, &frame, known.motion);
+                }
+            }
+            if known.pose_version != body.pose_version() {
+                known.pose_version = body.pose_version();
+                let mut frame = Frame { position: body.position(), rotation: body.rotation() };
+                if let Some(offset) = &known.offset {
+                    let arm = frame.rotation * offset.position;
+                    frame.position += arm;
+                    frame.rotation = frame.rotation * offset.rotation.to_matrix();
+                    known.arm = [arm.x as f32, arm.y as f32, arm.z as f32];
+                }
+                pipeline.pairs.move_geom(slot, &frame);
+            }
+            if awake {
+                let travel = body.linear_velocity().length() * h;
+                let ahead = if travel > margin { (travel - margin) as f32 } else { 0.0 };
+                if ahead != known.ahead {
+                    known.ahead = ahead;
+                    pipeline.pairs.set_ahead(slot, ahead.min(known.thickness));
+                }
+                if travel > f64::from(known.thickness) && known.motion == Motion::Awake {
+                    pipeline.fast.push(Fast { geom: known.key, body: key, start: body.pose() });
+                }
+            }
+        }
+    }
+
+    /// Wakes the bodies that sleep on a geom which is about to change.
+    pub(crate) fn wake_touching(&mut self, slot: usize) {
+        let Some(pipeline) = &self.pipeline else { return };
+        let slot = slot as u32;
+        for contact in (0..pipeline.manifolds.len()).filter_map(|place| pipeline.pairs.contact(place as u32))
+        {
+            let other = match (contact.a == slot, contact.b == slot) {
+                (true, _) => contact.b,
+                (_, true) => contact.a,
+                _ => continue,
+            };
+            if let Some(Some(known)) = pipeline.known.get(other as usize)
+                && let Some(key) = known.body
+                && let Ok(body) = self.dynamics.body_mut(key)
+                && !body.is_enabled()
+            {
+                body.enable();
+            }
+        }
+    }
+
+    /// Takes geoms into the cache that are new or were changed by hand, and those out that are no more.
+    fn take_geoms_in(&mut self, pipeline: &mut Pipeline) {
+        let Pipeline { pairs, known, .. } = pipeline;
+        known.resize(self.geom_infos.len().max(known.len()), None);
+        for (slot, known) in known.iter_mut().enumerate() {
+            let info = self.geom_infos.get_mut(slot).and_then(Option::as_mut);
+            let geom = info.as_ref().and_then(|info| self.colliders.geom(info.key));
+            let (Some(info), Some(geom)) = (info, geom.filter(|g| g.is_enabled())) else {
+                if known.take().is_some() {
+                    pairs.remove(slot as u32);
+                }
+                continue;
+            };
+            if known.as_ref().is_some_and(|k| k.key == info.key) && !info.changed {
+                continue;
+            }
+            info.changed = false;
+            let body = info.body.and_then(|key| self.dynamics.body(key).ok());
+            let motion = body.map_or(Motion::Fixed, motion_of);
+            let mut made = Known::new(info, geom, motion);
+            let mut frame = *geom.frame();
+            if let Some(body) = body {
+                let pose = body.pose() * made.offset.unwrap_or_default();
+                let arm = pose.position - body.position();
+                made.arm = [arm.x as f32, arm.y as f32, arm.z as f32];
+                made.pose_version = body.pose_version();
+                frame = Frame::from(&pose);
+            }
+            pairs.insert(slot as u32, geom.shape().clone(), &frame, motion);
+            *known = Some(made);
+        }
+    }
+}
+
+impl Known {
+    fn new(info: &GeomInfo, geom: &ferrode_collide::Geom, motion: Motion) -> Self {
+        // Half the least extent: what moves less can't get past a surface's middle.
+        let own = geom.shape().aabb_in(&Frame::IDENTITY).extent();
+        let least = own.x.min(own.y).min(own.z);
+        Self {
+            key: info.key,
+            body: info.body,
+            offset: geom.offset().copied(),
+            pose_version: 0,
+            motion,
+            arm: [0.0; 3],
+            thickness: (0.5 * least) as f32,
+            directed: info.material.friction_direction.is_some(),
+            ahead: 0.0,
+        }
+    }
+}
+
+fn motion_of(body: &ferrode_dynamics::Body) -> Motion {
+    if body.is_kinematic() {
+        Motion::Fixed
+    } else if body.is_enabled() && !body.is_quarantined() {
+        Motion::Awake
+    } else {
+        Motion::Asleep
+    }
+}

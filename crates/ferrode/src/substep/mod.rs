@@ -1,0 +1,82 @@
+//! A step of a world with shapes by [`Stepper::Substep`](crate::Stepper::Substep): pairs and manifolds are kept from step to
+//! step, and no contact joints are made.
+//!
+//! ```text
+//! geoms follow bodies → pair cache: near pairs, manifolds refreshed or found anew → contacts for the solver
+//!   → dynamics' step → impulses back into the manifolds → what was too fast is stopped at what stands still → events
+//! ```
+
+mod contacts;
+mod continuous;
+mod geoms;
+mod report;
+mod surfaces;
+
+use crate::{Error, Step, World};
+use continuous::Fast;
+use ferrode_collide::pairs::{PairCache, PairSettings};
+use ferrode_dynamics::ContactManifold;
+use geoms::Known;
+use surfaces::SurfaceTable;
+
+/// What `Substep` keeps of a world's shapes. Plain data: a clone steps to the same bits.
+#[derive(Clone, Debug)]
+pub(crate) struct Pipeline {
+    pairs: PairCache,
+    /// By the geoms' slots.
+    known: Vec<Option<Known>>,
+    /// The world's versions that `known` and the manifolds were made for.
+    seen_geoms: Option<u64>,
+    seen_rules: (u64, u64),
+    /// By the contacts' places in the cache.
+    manifolds: Vec<ContactManifold>,
+    surfaces: SurfaceTable,
+    fast: Vec<Fast>,
+    /// Of the last step.
+    max_depth: f64,
+    points: usize,
+}
+
+impl Default for Pipeline {
+    fn default() -> Self {
+        Self {
+            pairs: PairCache::new(PairSettings::default()),
+            known: Vec::new(),
+            seen_geoms: None,
+            seen_rules: (0, 0),
+            manifolds: Vec::new(),
+            surfaces: SurfaceTable::default(),
+            fast: Vec::new(),
+            max_depth: 0.0,
+            points: 0,
+        }
+    }
+}
+
+impl World {
+    /// As [`World::step`], with the stepper `Substep`.
+    pub(crate) fn step_substep(&mut self, h: f64) -> Result<Step, Error> {
+        let mut pipeline = self.pipeline.take().unwrap_or_default();
+        let result = self.step_pipeline(h, &mut pipeline);
+        self.pipeline = Some(pipeline);
+        result
+    }
+
+    fn step_pipeline(&mut self, h: f64, pipeline: &mut Pipeline) -> Result<Step, Error> {
+        self.follow_bodies(h, pipeline);
+        self.update_pairs(pipeline);
+        self.fill_manifolds(pipeline);
+        let surfaces = &pipeline.surfaces.list;
+        let dynamics = self.dynamics.step_with_manifolds(h, &mut pipeline.manifolds, surfaces)?;
+        pipeline.keep_impulses();
+        self.stop_fast_bodies(pipeline)?;
+        self.report_substep(pipeline);
+        self.advance_clock(h);
+        Ok(Step {
+            pairs: pipeline.pairs.pair_count(),
+            contacts: pipeline.points,
+            max_depth: pipeline.max_depth,
+            dynamics,
+        })
+    }
+}
