@@ -85,7 +85,7 @@ impl World {
             self.walk_to_depth(seed, depth, work);
             self.keep_given_forces(work);
             for _ in 0..iterations {
-                self.substep(h / f64::from(iterations), &ctx, random, moved, (island, work), &mut report);
+                self.fast_substep(h / f64::from(iterations), &ctx, random, moved, (island, work), &mut report);
             }
             report.islands += 1;
         }
@@ -137,7 +137,7 @@ impl World {
     }
 
     /// Forces from the joints one after the other, then all bodies move by `k`.
-    fn substep(
+    fn fast_substep(
         &mut self,
         k: f64,
         ctx: &StepContext,
