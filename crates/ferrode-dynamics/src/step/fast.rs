@@ -85,7 +85,14 @@ impl World {
             self.walk_to_depth(seed, depth, work);
             self.keep_given_forces(work);
             for _ in 0..iterations {
-                self.fast_substep(h / f64::from(iterations), &ctx, random, moved, (island, work), &mut report);
+                self.fast_substep(
+                    h / f64::from(iterations),
+                    &ctx,
+                    random,
+                    moved,
+                    (island, work),
+                    &mut report,
+                );
             }
             report.islands += 1;
         }
