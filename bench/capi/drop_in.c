@@ -209,6 +209,30 @@ static Run joints(const Library *l) {
     return run;
 }
 
+/* A chain of sixty bodies, on ball joints and hinges by turns, swings from horizontal. */
+static Run chain(const Library *l) {
+    Scene s;
+    open_scene(&s, l);
+    dBodyID above = 0;
+    for (int i = 0; i < 60; i++) {
+        dBodyID body = add(&s, 1, i + 0.5, 0, 70);
+        if (i % 2) {
+            dJointID j = l->dJointCreateHinge(s.world, 0);
+            l->dJointAttach(j, above, body);
+            l->dJointSetHingeAnchor(j, i, 0, 70);
+            l->dJointSetHingeAxis(j, 0, 1, 0);
+        } else {
+            dJointID j = l->dJointCreateBall(s.world, 0);
+            l->dJointAttach(j, above, body);
+            l->dJointSetBallAnchor(j, i, 0, 70);
+        }
+        above = body;
+    }
+    Run run = go(&s, 100, 0.01, 0);
+    close_scene(&s);
+    return run;
+}
+
 /* Boxes, balls, capsules and cylinders fall on hills of 8,192 triangles. */
 static Run terrain(const Library *l) {
     enum { SIDE = 65 };
@@ -257,16 +281,16 @@ int main(int argc, char **argv) {
     int repetitions = argc > 3 ? atoi(argv[3]) : 5;
     if (repetitions < 1 || repetitions > MOST) { fprintf(stderr, "1 to %d repetitions\n", MOST); return 2; }
     struct { const char *name; Run (*run)(const Library *); } programs[] = {
-        {"pile", pile}, {"joints", joints}, {"terrain", terrain}};
+        {"pile", pile}, {"joints", joints}, {"chain", chain}, {"terrain", terrain}};
     if (argc > 5) {  /* For profilers: one program on one library. */
-        for (int p = 0; p < 3; p++)
+        for (int p = 0; p < 4; p++)
             if (!strcmp(programs[p].name, argv[4]))
                 for (int i = 0; i < repetitions; i++) programs[p].run(&libraries[!strcmp(argv[5], "ours")]);
         return 0;
     }
     printf("| program | library | total ms | collision ms | step ms | rest ms | contacts a step | mean height m |\n");
     printf("|---|---|---:|---:|---:|---:|---:|---:|\n");
-    for (int p = 0; p < 3; p++) {
+    for (int p = 0; p < 4; p++) {
         if (argc > 4 && strcmp(programs[p].name, argv[4])) continue;
         static double part[2][4][MOST];
         double ratio[MOST];

@@ -10,7 +10,7 @@ use crate::real::{Real, Real4, Real12, mat3, matrix3, padded, quat, quaternion, 
 use crate::slab::{Handle, Link, Pool, Record, Tag};
 use core::cell::{Cell, RefCell};
 use core::ffi::c_void;
-use ferrode_dynamics::{BodyKey, BodyState, JointKey, JointType, World};
+use ferrode_dynamics::{BodyKey, BodyState, DirectSettings, JointKey, JointType, World};
 use std::collections::VecDeque;
 
 pub type WorldId = Handle<WorldRecord>;
@@ -116,6 +116,9 @@ impl<T> Default for Handle<T> {
     }
 }
 
+/// Islands with fewer rows are solved by Dantzig's method.
+const DENSE_ROWS: usize = 100;
+
 impl WorldRecord {
     /// A record for a new world.
     pub fn create() -> &'static Self {
@@ -125,6 +128,9 @@ impl WorldRecord {
         if cfg!(feature = "single") {
             world.set_cfm(1e-5).ok();
         }
+        // Small islands by ODE's own method: sooner, and with ODE's choice among forces that the problem leaves open.
+        let direct = DirectSettings { dense_rows: DENSE_ROWS, ..*world.direct() };
+        world.set_direct(direct);
         record.engine.set(Some(Box::into_raw(Box::new(world))));
         record
     }

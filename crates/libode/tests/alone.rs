@@ -1,5 +1,4 @@
-//! C++ programs that do what libode does not survive, on this library alone, with the installed headers or our own: each
-//! prints what its file here says.
+//! C++ programs on this library alone, for what libode does not survive or is no measure of.
 
 mod support;
 
@@ -56,4 +55,9 @@ fn callbacks_that_do_not_come_back_leave_the_library_usable() {
 fn objects_may_be_destroyed_last_of_all() {
     let wanted = "contacts 1\nmain ends\nexit handler\nlate contacts 1\nlate pair\nlate end\n";
     check("last_things", wanted);
+}
+
+#[test]
+fn worlds_that_come_and_go_leave_no_memory_behind() {
+    check("many_worlds", "steady\n");
 }

@@ -19,6 +19,8 @@ type NearCallback = unsafe extern "C-unwind" fn(*mut c_void, GeomId, GeomId);
 thread_local! {
     /// Memory for one call's contacts.
     static FOUND: RefCell<Vec<GeomContact>> = const { RefCell::new(Vec::new()) };
+    /// Memory for one call's pairs; a call within its callbacks finds none here and makes its own.
+    static PAIRS: RefCell<Pairs> = const { RefCell::new(Pairs::new()) };
 }
 
 /// The program's array of contacts, with a stride of its own.
@@ -192,6 +194,13 @@ fn tell(pairs: &Pairs, spaces: &[&'static GeomRecord], data: *mut c_void, callba
     }
 }
 
+/// An empty list. Nothing is borrowed while the program is called; in a static destructor the thread's memory may be gone.
+fn take_pairs() -> Pairs {
+    let mut pairs = PAIRS.try_with(RefCell::take).unwrap_or_default();
+    pairs.clear();
+    pairs
+}
+
 /// Calls back for each pair of a space's members that may touch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C-unwind" fn dSpaceCollide(
@@ -203,9 +212,10 @@ pub unsafe extern "C-unwind" fn dSpaceCollide(
         let space = space.get()?;
         space.require_space()?;
         let callback = callback.ok_or(Fault::ARGUMENT)?;
-        let mut pairs = Pairs::new();
+        let mut pairs = take_pairs();
         pairs_within(space, &mut pairs)?;
         tell(&pairs, &[space], data, callback);
+        PAIRS.try_with(|kept| *kept.borrow_mut() = pairs).ok();
         Ok(())
     });
 }
@@ -221,7 +231,7 @@ pub unsafe extern "C-unwind" fn dSpaceCollide2(
     fence("dSpaceCollide2", || {
         let (a, b) = (a.get()?, b.get()?);
         let callback = callback.ok_or(Fault::ARGUMENT)?;
-        let mut pairs = Pairs::new();
+        let mut pairs = take_pairs();
         pairs_between(a, b, &mut pairs)?;
         let sides = [a, b];
         let spaces: &[_] = match (a.is_space(), b.is_space()) {
@@ -231,6 +241,7 @@ pub unsafe extern "C-unwind" fn dSpaceCollide2(
             (false, false) => &[],
         };
         tell(&pairs, spaces, data, callback);
+        PAIRS.try_with(|kept| *kept.borrow_mut() = pairs).ok();
         Ok(())
     });
 }
