@@ -59,6 +59,8 @@ pub struct IslandSolve {
     pub fell_back: bool,
     /// Blocks of 6×6 numbers in the sparse factor; 0 for the dense method.
     pub factor_blocks: usize,
+    /// How often the boxed problem was solved again for the friction cone; 0 with the pyramid.
+    pub friction_sweeps: u32,
 }
 
 impl IslandSolve {

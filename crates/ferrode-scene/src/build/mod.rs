@@ -56,7 +56,9 @@ mod planar;
 mod shapes;
 mod solids;
 
-use ferrode::{Error as EngineError, Pose, Quat, Softness, Stepper, Vec3, World};
+use ferrode::{
+    DirectSettings, Error as EngineError, FrictionLaw, Pose, Quat, Softness, Stepper, Vec3, World,
+};
 
 use crate::description::{FrictionModel, JointId, LinkId, OdeSolver, Scene};
 use crate::error::{Notes, Result, SceneError, Warning, WarningKind};
@@ -160,10 +162,18 @@ fn set_up(
     let model = match ode.friction_model {
         FrictionModel::Pyramid => return Ok(()),
         FrictionModel::Box => "box",
-        FrictionModel::Cone => "cone",
+        FrictionModel::Cone => {
+            let cone = DirectSettings { friction: FrictionLaw::Cone, ..*world.direct() };
+            world.set_direct(cone);
+            if world.stepper == Stepper::Direct {
+                return Ok(());
+            }
+            "cone"
+        }
     };
     let file = scene.models.first().map_or("", |model| model.origin.source().name());
-    let message = format!("the {model} model of friction is not supported: the pyramid model holds");
+    let message =
+        format!("the {model} model of friction is not supported by this stepper: the pyramid model holds");
     notes.push(Warning::in_file(WarningKind::NotSupported, file, message));
     Ok(())
 }

@@ -6,6 +6,7 @@
 //! the rows did in the step before ([`warm`]).
 
 mod arrange;
+mod cone;
 mod dense;
 mod sparse;
 mod warm;
@@ -18,9 +19,24 @@ use crate::rows::{NO_FRICTION_INDEX, Row};
 use crate::step::{Island, SolverBody};
 use ferrode_math::Vec3;
 
+/// What bounds the friction of contacts whose bounds hang on the normal force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FrictionLaw {
+    /// Each tangent for itself, with bounds frozen at the normal forces without friction (ODE's pyramid): friction is up to √2 times
+    /// stronger between the tangents.
+    #[default]
+    Pyramid,
+    /// Coulomb's law: the same in every direction, against the sliding velocity, with the normal forces as they are. Takes several
+    /// solutions of the boxed problem, each from the one before.
+    Cone,
+}
+
 /// How `Direct` solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectSettings {
+    /// What bounds friction.
+    pub friction: FrictionLaw,
     /// Islands with fewer rows are solved by Dantzig's method on the dense matrix, as in ODE; 30 by default. `usize::MAX` solves all
     /// islands so.
     pub dense_rows: usize,
@@ -35,7 +51,13 @@ pub struct DirectSettings {
 
 impl Default for DirectSettings {
     fn default() -> Self {
-        Self { dense_rows: 30, max_factorisations: 200, most_dense_rows: 1500, warm_start: true }
+        Self {
+            friction: FrictionLaw::Pyramid,
+            dense_rows: 30,
+            max_factorisations: 200,
+            most_dense_rows: 1500,
+            warm_start: true,
+        }
     }
 }
 
@@ -47,6 +69,7 @@ pub(crate) struct Workspace {
     spans: SpansByBody,
     dense: dense::Workspace,
     sparse: sparse::Workspace,
+    cone: cone::Workspace,
 }
 
 /// What all methods need of the rows: right-hand side, CFM/h, bounds.
@@ -95,20 +118,86 @@ pub(crate) fn solve(
     free_motions(&island.bodies, fps, &mut work.free);
     work.system.load(island, fps, &work.free);
     work.spans.list(island);
-    let dense = m < settings.dense_rows;
+    let solved = solve_boxed(island, settings, number, Start::Step, work, &mut report);
+    if settings.friction == FrictionLaw::Cone && work.cone.find(island) {
+        let solved = solve_cone(island, fps, settings, number, work, &mut report);
+        return (solved, report);
+    }
+    (solved, report)
+}
+
+/// What block pivoting starts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    /// What rows did in the step before.
+    Step,
+    /// What they did in the problem solved last, of the same rows.
+    Problem,
+}
+
+/// Solves the problem that is loaded.
+fn solve_boxed(
+    island: &mut Island,
+    settings: &DirectSettings,
+    number: usize,
+    start: Start,
+    work: &mut Workspace,
+    report: &mut IslandSolve,
+) -> Solved {
+    let dense = island.rows.len() < settings.dense_rows;
     if dense {
-        let solved = dense::solve(island, &work.system, &work.spans, &mut work.dense, &mut report);
+        let solved = dense::solve(island, &work.system, &work.spans, &mut work.dense, report);
         if solved == Solved::Completely {
-            return (solved, report);
+            return solved;
         }
         // ODE gives up here, and bodies fall through each other.
         report.fell_back = true;
     }
-    let solved = sparse::solve(island, &work.system, settings, number, &mut work.sparse, &mut report);
+    let solved = sparse::solve(island, &work.system, settings, number, start, &mut work.sparse, report);
     if dense {
         report.method = DirectMethod::BlockPivoting;
     }
-    (solved, report)
+    solved
+}
+
+/// Goes from the pyramid's answer to the cone's: see [`cone`].
+fn solve_cone(
+    island: &mut Island,
+    fps: f64,
+    settings: &DirectSettings,
+    number: usize,
+    work: &mut Workspace,
+    report: &mut IslandSolve,
+) -> Solved {
+    work.cone.begin(island);
+    let mut solved = Solved::Partly;
+    let mut start = Start::Step;
+    for sweep in 0..cone::MOST_SWEEPS {
+        work.cone.push(island);
+        let pushed = work.cone.take_pushed();
+        let free = &work.free;
+        work.cone.turn(island, sweep, fps, |island, span, row| {
+            let span = &island.spans[span];
+            [cone::along(row, span.bodies, &pushed), right_hand_side(row, span, fps, free)]
+        });
+        work.cone.give_pushed(pushed);
+        work.system.load(island, fps, &work.free);
+        report.residual = 0.0;
+        report.largest_force = 0.0;
+        let factorisations = report.factorisations;
+        solved = solve_boxed(island, settings, number, start, work, report);
+        report.factorisations += factorisations;
+        report.friction_sweeps += 1;
+        start = Start::Problem;
+        let change = work.cone.turn_back(island);
+        work.cone.restore(island);
+        if cone::Workspace::converged(change) {
+            return solved;
+        }
+    }
+    // Not at rest, but each round is a solution for the bounds of the one before.
+    let _ = solved;
+    Solved::Partly
 }
 
 impl RowSystem {

@@ -3,7 +3,7 @@
 //! With M⁻¹ = C Cᵀ per body (C: the root of the inverse mass, and the Cholesky factor of the inverse inertia) a row's Jacobian becomes J C.
 
 use super::warm::{Key, WarmStart};
-use super::{DirectSettings, RowSystem};
+use super::{DirectSettings, RowSystem, Start};
 use crate::arena::NIL;
 use crate::report::{DirectMethod, IslandSolve};
 use crate::rows::RowKind;
@@ -71,11 +71,14 @@ pub(super) fn solve(
     system: &RowSystem,
     settings: &DirectSettings,
     number: usize,
+    start: Start,
     work: &mut Workspace,
     report: &mut IslandSolve,
 ) -> Solved {
     work.load(island);
-    work.guess(island, settings.warm_start);
+    if start == Start::Step || work.states.len() != island.rows.len() {
+        work.guess(island, settings.warm_start);
+    }
     let mut problem = SparseLcp {
         bodies: island.bodies.len(),
         blocks: &work.blocks,
@@ -106,7 +109,7 @@ pub(super) fn solve(
                 island.lambda.fill(0.0);
                 return Solved::Partly;
             }
-            if settings.warm_start {
+            if settings.warm_start && start == Start::Step {
                 work.remember(island);
             }
             if report.certified() { Solved::Completely } else { Solved::Partly }
