@@ -2,6 +2,7 @@
 
 use super::epa::{Depth, epa};
 use super::gjk::{Gap, Simplex, gjk, gjk_from};
+use super::line_gap::line_gap;
 use super::support::Body;
 use ferrode_math::Vec3;
 
@@ -19,6 +20,9 @@ pub(crate) struct Touch {
 /// The contact of two convex bodies; `None` if they are apart.
 pub(crate) fn touch(a: &Body<'_>, b: &Body<'_>) -> Option<Touch> {
     let margin = a.margin + b.margin;
+    if let Some((pa, pb)) = line_gap(a, b) {
+        return apart(a, b, pa, pb, pa - pb).filter(|t| t.depth >= 0.0);
+    }
     let simplex = match gjk(a, b, margin) {
         Gap::Far => return None,
         Gap::Apart { a: pa, b: pb, between } => {

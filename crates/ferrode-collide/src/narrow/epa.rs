@@ -143,8 +143,9 @@ fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut 
     if let Some(l) = least {
         return Some(Depth { normal: l.normal, depth: l.depth.max(0.0), a: l.a, b: l.b });
     }
-    let corner = result.v.map(|i| p.vertex(i));
     let foot = result.normal * result.distance;
+    // A flat face is several triangles: the one that has the foot of the origin knows the points that touch.
+    let corner = p.at_point(result, foot, tolerance).v.map(|i| p.vertex(i));
     let [i, j, k] = corner.map(|v| v.w - foot);
     let (places, weights, n) = super::gjk::nearest_of_triangle(i, j, k);
     let (mut pa, mut pb) = (Vec3::ZERO, Vec3::ZERO);

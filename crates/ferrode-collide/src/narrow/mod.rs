@@ -36,6 +36,7 @@ mod field_cells;
 mod gjk;
 pub(crate) mod heightfield_shape;
 mod heightfield_trimesh;
+mod line_gap;
 pub(crate) mod manifold;
 mod merge;
 mod over_face;

@@ -7,6 +7,8 @@ use ferrode_math::Vec3;
 const VERTICES: usize = 96;
 /// Euler: a closed surface of triangles over v corners has 2 v − 4.
 const FACES: usize = 2 * VERTICES;
+/// Cosine of the normals of faces in one plane.
+const ONE_PLANE: f64 = 1.0 - 1e-9;
 /// Most edges of the hole that a new corner closes.
 const HOLE: usize = 96;
 
@@ -87,6 +89,29 @@ impl Polytope {
     /// Whether a face has a corner at this point.
     pub fn has_point(&self, face: usize, w: Vec3) -> bool {
         self.faces[face].v.iter().any(|&i| self.vertices[usize::from(i)].w == w)
+    }
+
+    /// Of the faces in the plane of another, up to `slack`, the one that comes nearest to a point of it.
+    pub fn at_point(&self, face: Face, point: Vec3, slack: f64) -> Face {
+        let beside = |f: &Face| {
+            let [i, j, k] = f.v.map(|v| self.vertices[usize::from(v)].w - point);
+            let (places, weights, n) = super::gjk::nearest_of_triangle(i, j, k);
+            let corner = [i, j, k];
+            (0..n).fold(Vec3::ZERO, |s, m| s + corner[places[m]] * weights[m]).length_squared()
+        };
+        let mut best = (beside(&face), face);
+        if best.0 <= slack * slack {
+            return face;
+        }
+        for (f, &distance) in self.faces[..self.face_count].iter().zip(&self.distances) {
+            if (distance - face.distance).abs() <= slack && f.normal.dot(face.normal) > ONE_PLANE {
+                let off = beside(f);
+                if off < best.0 {
+                    best = (off, *f);
+                }
+            }
+        }
+        best.1
     }
 
     /// Has a face never be the nearest.
