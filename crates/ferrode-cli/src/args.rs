@@ -14,6 +14,8 @@ pub enum Task {
     Check(FileArgs),
     /// `ferrode compare`
     Compare(CompareArgs),
+    /// `ferrode view`, `ferrode render` or `ferrode replay`, with the arguments for the viewer.
+    Viewer(&'static str, Vec<std::ffi::OsString>),
     /// `ferrode demo`
     Demo(DemoArgs),
 }
@@ -274,6 +276,22 @@ fn output_args(command: Command) -> Command {
         )
 }
 
+/// The viewer's commands, which it reads the arguments of by itself.
+const VIEWER: [(&str, &str); 3] = [
+    ("view", "Show a world in a window while it is simulated"),
+    ("render", "Draw a picture or a film of a world, without a window"),
+    ("replay", "Show a recording made with `run --record`"),
+];
+
+fn viewer_command((name, about): (&'static str, &'static str)) -> Command {
+    let arguments = Arg::new("arguments")
+        .num_args(0..)
+        .trailing_var_arg(true)
+        .allow_hyphen_values(true)
+        .value_parser(value_parser!(std::ffi::OsString));
+    Command::new(name).about(about).disable_help_flag(true).arg(arguments)
+}
+
 /// The command line's grammar.
 pub fn command() -> Command {
     let run = Command::new("run")
@@ -334,6 +352,7 @@ pub fn command() -> Command {
         .subcommand(output_args(setup_args(file_args(run))))
         .subcommand(file_args(check))
         .subcommand(output_args(setup_args(file_args(compare))))
+        .subcommands(VIEWER.map(viewer_command))
         .subcommand(demo)
 }
 
@@ -356,6 +375,11 @@ where
             json: m.get_flag("json"),
             quiet: m.get_flag("quiet"),
         }),
+        Some((name, m)) if VIEWER.iter().any(|(known, _)| *known == name) => {
+            let known = VIEWER.iter().find(|(known, _)| *known == name).map_or("view", |(known, _)| known);
+            let arguments = m.get_many::<std::ffi::OsString>("arguments").unwrap_or_default();
+            Task::Viewer(known, arguments.cloned().collect())
+        }
         Some(("demo", m)) => Task::Demo(DemoArgs {
             name: m.get_one::<String>("name").cloned(),
             all: m.get_flag("all"),
@@ -428,6 +452,16 @@ mod tests {
         assert_eq!(run.record.unwrap().to_str(), Some("o.csv"));
         let Task::Run(run) = parse(["ferrode", "run", "a.sdf"]).unwrap() else { panic!("another task") };
         assert_eq!((run.length, run.stepper, run.every), (Length::Time(5.0), None, 1));
+    }
+
+    #[test]
+    fn the_viewers_arguments_are_handed_on_as_they_are() {
+        let line = "ferrode render a.sdf -o out.png --camera -30,20 --help";
+        let Task::Viewer(name, arguments) = parse(line.split_whitespace()).unwrap() else {
+            panic!("another task")
+        };
+        let text: Vec<&str> = arguments.iter().filter_map(|argument| argument.to_str()).collect();
+        assert_eq!((name, text.join(" ").as_str()), ("render", "a.sdf -o out.png --camera -30,20 --help"));
     }
 
     #[test]

@@ -34,6 +34,11 @@ fn main() -> ExitCode {
         args::Task::Run(args) => run::run(args),
         args::Task::Check(args) => check::check(args),
         args::Task::Compare(args) => compare::compare(args),
+        args::Task::Viewer(name, arguments) => {
+            let arguments = arguments.iter().map(std::ffi::OsString::as_os_str);
+            viewer::start(std::iter::once(std::ffi::OsStr::new(name)).chain(arguments))
+                .map(|()| Exit::Success)
+        }
         args::Task::Demo(args) => demo::demo(args),
     };
     let exit = result.unwrap_or_else(|Failure { exit, message }| {

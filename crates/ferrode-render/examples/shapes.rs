@@ -1,4 +1,4 @@
-//! Draws one of each shape into a picture: `cargo run --example shapes -- OUT.png [live]`.
+//! Draws one of each shape into a picture: `cargo run --example shapes -- OUT.png [live | SAMPLES,MAP,TAPS]`.
 
 use ferrode_math::{Pose, Quat, Vec3};
 use ferrode_render::{Camera, Canvas, Color, Ground, Layer, Mesh, Paint, Pattern, Quality, Scene};
@@ -76,7 +76,17 @@ fn scene() -> Scene {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let out = args.first().map_or("shapes.png", String::as_str);
-    let quality = if args.get(1).is_some_and(|q| q == "live") { Quality::live() } else { Quality::fine() };
+    let quality =
+        match args.get(1).map(|text| text.split(',').map(str::parse).collect::<Result<Vec<u32>, _>>()) {
+            None => Quality::fine(),
+            Some(Ok(numbers)) if numbers.len() == 3 => Quality {
+                samples: numbers[0],
+                shadow_map: numbers[1],
+                shadow_samples: numbers[2],
+                ..Quality::live()
+            },
+            Some(_) => Quality::live(),
+        };
     let mut canvas = Canvas::new(1280, 720, quality)?;
     println!("{}", canvas.gpu().name());
     let camera = Camera::look_at(Vec3::new(3.2, -6.0, 3.4), Vec3::new(-0.1, 0.5, 0.5));

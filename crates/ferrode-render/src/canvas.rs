@@ -1,5 +1,6 @@
 //! Pictures without a window.
 
+use crate::read_back::ReadBack;
 use crate::targets::texture;
 use crate::{Camera, Gpu, Picture, Quality, RenderError, Renderer, Scene};
 
@@ -13,12 +14,7 @@ pub struct Canvas {
     renderer: Renderer,
     size: [u32; 2],
     target: wgpu::Texture,
-    /// The picture's rows, each padded to a multiple of 256 bytes.
-    rows: wgpu::Buffer,
-}
-
-fn padded(width: u32) -> u32 {
-    (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
+    read_back: ReadBack,
 }
 
 impl Canvas {
@@ -42,15 +38,10 @@ impl Canvas {
         }
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let target = texture(&gpu.device, [width, height], 1, FORMAT, usage);
-        let rows = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("picture"),
-            size: u64::from(padded(width)) * u64::from(height),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
+        let read_back = ReadBack::new(&gpu.device, [width, height]);
         let quality = Quality { shadow_map: quality.shadow_map.min(most), ..quality };
         let renderer = Renderer::new(&gpu, FORMAT, quality);
-        Ok(Self { gpu, renderer, size: [width, height], target, rows })
+        Ok(Self { gpu, renderer, size: [width, height], target, read_back })
     }
 
     /// The driver.
@@ -87,44 +78,9 @@ impl Canvas {
         more: impl FnOnce(&Gpu, &mut wgpu::CommandEncoder, &wgpu::TextureView),
     ) -> Result<Picture, RenderError> {
         let view = self.target.create_view(&Default::default());
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        let mut encoder = device.create_command_encoder(&Default::default());
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         self.renderer.draw(&mut encoder, &view, self.size, scene, camera);
         more(&self.gpu, &mut encoder, &view);
-        let [width, height] = self.size;
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(padded(width)),
-            rows_per_image: None,
-        };
-        encoder.copy_texture_to_buffer(
-            self.target.as_image_copy(),
-            wgpu::TexelCopyBufferInfo { buffer: &self.rows, layout },
-            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        );
-        queue.submit([encoder.finish()]);
-        self.read()
-    }
-
-    fn read(&self) -> Result<Picture, RenderError> {
-        let failed = |error: &dyn std::fmt::Display| RenderError::ReadBack(error.to_string());
-        let (send, receive) = std::sync::mpsc::channel();
-        let slice = self.rows.slice(..);
-        slice.map_async(wgpu::MapMode::Read, move |result| {
-            // Nobody waits any more if this fails.
-            let _ = send.send(result);
-        });
-        self.gpu.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| failed(&error))?;
-        receive.recv().map_err(|error| failed(&error))?.map_err(|error| failed(&error))?;
-        let [width, height] = self.size;
-        let mut pixels = Vec::with_capacity(width as usize * height as usize * 4);
-        {
-            let bytes = slice.get_mapped_range().map_err(|error| failed(&error))?;
-            for row in bytes.chunks_exact(padded(width) as usize) {
-                pixels.extend_from_slice(&row[..width as usize * 4]);
-            }
-        }
-        self.rows.unmap();
-        Ok(Picture { width, height, pixels })
+        self.read_back.fetch(&self.gpu, encoder, &self.target)
     }
 }

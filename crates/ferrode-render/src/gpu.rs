@@ -88,6 +88,11 @@ impl Gpu {
         format!("{} ({:?})", info.name, info.backend)
     }
 
+    /// Whether the processor draws, in software.
+    pub fn is_software(&self) -> bool {
+        self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
+    }
+
     /// The largest side that a picture can have.
     pub fn largest(&self) -> u32 {
         self.device.limits().max_texture_dimension_2d

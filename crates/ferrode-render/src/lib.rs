@@ -12,6 +12,7 @@ mod paint;
 mod picture;
 mod pipelines;
 mod quality;
+mod read_back;
 mod renderer;
 mod scene;
 mod shadow;

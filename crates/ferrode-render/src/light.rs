@@ -16,7 +16,7 @@ pub struct Light {
 
 impl Default for Light {
     fn default() -> Self {
-        Self { from: Vec3::new(0.42, -0.36, 0.83), strength: 1.0, shadow: 1.0 }
+        Self { from: Vec3::new(-0.42, -0.50, 0.76), strength: 1.0, shadow: 1.0 }
     }
 }
 

@@ -14,7 +14,7 @@ pub struct Quality {
 }
 
 impl Quality {
-    /// For windows: 300 bodies at 1280×720 are drawn more than 20 times a second in software on two cores.
+    /// For windows.
     pub const fn live() -> Self {
         Self { samples: 4, shadow_map: 1536, shadow_samples: 4, rounded_boxes: true }
     }

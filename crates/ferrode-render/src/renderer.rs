@@ -32,6 +32,8 @@ pub struct Renderer {
     segments: Dynamic,
     meshes: BTreeMap<u64, MeshBuffers>,
     pictures: u64,
+    /// Columns on the right that need not be drawn.
+    pub(crate) covered: u32,
 }
 
 /// A mesh on the graphics card.
@@ -153,6 +155,7 @@ impl Renderer {
             segments: Dynamic::new(device),
             meshes: BTreeMap::new(),
             pictures: 0,
+            covered: 0,
         }
     }
 
@@ -367,6 +370,9 @@ impl Renderer {
         pass.set_bind_group(0, &self.globals_group, &[]);
         pass.set_bind_group(1, &self.shadow_group, &[]);
         pass.set_pipeline(pipeline);
+        if let Some(Targets { size: [width, height], .. }) = self.targets {
+            pass.set_scissor_rect(0, 0, width.saturating_sub(self.covered).max(1), height);
+        }
     }
 
     fn draw_lines(&self, pass: &mut wgpu::RenderPass<'_>, lines: std::ops::Range<u32>) {

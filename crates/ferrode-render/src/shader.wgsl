@@ -89,7 +89,8 @@ fn sunlight(place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
     if size == 0.0 {
         return 1.0;
     }
-    let slope = sqrt(max(0.0, 1.0 - pow(dot(normal, globals.sun.xyz), 2.0)));
+    let facing = dot(normal, globals.sun.xyz);
+    let slope = sqrt(max(0.0, 1.0 - facing * facing));
     let lifted = place + normal * globals.screen.w * (1.0 + 2.5 * slope);
     let clip = globals.sun_clip * vec4f(lifted, 1.0);
     let at = clip.xy * vec2f(0.5, -0.5) + 0.5;
@@ -101,37 +102,53 @@ fn sunlight(place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
     let turn = 6.2831853 * fract(52.9829189 * fract(dot(pixel, vec2f(0.06711056, 0.00583715))));
     let reach = select(1.2, 2.8, shadow_samples > 8u) / size;
     var light = 0.0;
+    var along = vec2f(cos(turn), sin(turn));
     for (var i = 0u; i < shadow_samples; i++) {
-        let angle = turn + f32(i) * 2.3999632;
-        let r = reach * sqrt((f32(i) + 0.5) / f32(shadow_samples));
-        let offset = r * vec2f(cos(angle), sin(angle));
+        let offset = along * (reach * sqrt((f32(i) + 0.5) / f32(shadow_samples)));
         light += textureSampleCompareLevel(shadow_map, shadow_sampler, at + offset, depth);
+        // On by the golden angle, 2.3999632.
+        along = vec2f(-0.7373688 * along.x - 0.6754903 * along.y, 0.6754903 * along.x - 0.7373688 * along.y);
     }
     return mix(1.0, light / f32(shadow_samples), globals.zenith.w);
 }
 
 // From light without limit to what a screen can show: bright parts are pressed together, colours stay (Narkowicz, "ACES
-// filmic tone mapping curve", 2015, applied to the largest part and blended with each part).
+// filmic tone mapping curve", 2015).
 fn filmic(x: vec3f) -> vec3f {
     return clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14), vec3f(0.0), vec3f(1.0));
 }
 
-fn shaded(color: vec3f, place: vec3f, normal: vec3f, gloss: f32, pixel: vec2f) -> vec3f {
-    let view = normalize(globals.eye.xyz - place);
-    let facing = dot(normal, globals.sun.xyz);
-    var sun = 0.0;
-    if facing > 0.0 {
-        sun = facing * sunlight(place, normal, pixel) * globals.sun.w;
-    }
-    let overhead = 0.5 + 0.5 * normal.z;
+fn ambient(normal: vec3f) -> vec3f {
     let bounce = vec3f(0.34, 0.32, 0.30);
-    let ambient = mix(bounce, mix(globals.zenith.rgb, globals.horizon.rgb, 0.5), overhead) * 0.62;
-    var light = color * (ambient + vec3f(1.0, 0.95, 0.87) * (1.18 * sun));
+    return mix(bounce, mix(globals.zenith.rgb, globals.horizon.rgb, 0.5), 0.5 + 0.5 * normal.z) * 0.62;
+}
+
+const WARM: vec3f = vec3f(1.18, 1.121, 1.0266);
+const EXPOSURE: f32 = 0.78;
+
+fn sun_on(place: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
+    let facing = dot(normal, globals.sun.xyz);
+    if facing <= 0.0 {
+        return 0.0;
+    }
+    return facing * sunlight(place, normal, pixel) * globals.sun.w;
+}
+
+// Dull surfaces.
+fn matt(color: vec3f, place: vec3f, normal: vec3f, pixel: vec2f) -> vec3f {
+    return filmic(color * (ambient(normal) + WARM * sun_on(place, normal, pixel)) * EXPOSURE);
+}
+
+// Surfaces with a highlight (Blinn, "Models of light reflection", 1977) and a rim of sky.
+fn glossy(color: vec3f, place: vec3f, normal: vec3f, pixel: vec2f) -> vec3f {
+    let view = normalize(globals.eye.xyz - place);
+    let sun = sun_on(place, normal, pixel);
     let middle = normalize(view + globals.sun.xyz);
-    let shine = pow(max(dot(normal, middle), 0.0), 48.0) * sun * 0.22 * gloss;
-    let edge = pow(1.0 - max(dot(normal, view), 0.0), 4.0) * 0.10 * gloss;
-    light += vec3f(shine) + globals.horizon.rgb * edge;
-    return filmic(light * 0.78);
+    let shine = pow(max(dot(normal, middle), 0.0), 48.0) * sun * 0.22;
+    let away = 1.0 - max(dot(normal, view), 0.0);
+    let rim = away * away * away * away * 0.10;
+    let light = color * (ambient(normal) + WARM * sun) + vec3f(shine) + globals.horizon.rgb * rim;
+    return filmic(light * EXPOSURE);
 }
 
 @fragment
@@ -145,7 +162,7 @@ fn shape_fragment(s: Surface, @builtin(front_facing) front: bool) -> @location(0
     if !front {
         normal = -normal;
     }
-    return vec4f(shaded(color, s.place, normal, 1.0, s.clip.xy), s.color.a);
+    return vec4f(glossy(color, s.place, normal, s.clip.xy), s.color.a);
 }
 
 // ---------------------------------------------------------------- sky
@@ -157,7 +174,8 @@ struct Backdrop {
 
 fn sky(along: vec3f) -> vec3f {
     let height = clamp(along.z, 0.0, 1.0);
-    return mix(globals.horizon.rgb, globals.zenith.rgb, 1.0 - pow(1.0 - height, 2.2));
+    let low = 1.0 - height;
+    return mix(globals.horizon.rgb, globals.zenith.rgb, 1.0 - low * low);
 }
 
 @vertex
@@ -232,11 +250,12 @@ fn ground_fragment(s: Floor) -> @location(0) vec4f {
     if below {
         normal = -normal;
     }
-    let lit = shaded(color, s.place, normal, 0.0, s.clip.xy);
+    let lit = matt(color, s.place, normal, s.clip.xy);
     let away = distance(s.place, globals.eye.xyz);
-    let fade = 1.0 - exp2(-pow(max(away - globals.horizon.w, 0.0) / (globals.horizon.w * 4.0), 1.2));
-    let edge = smoothstep(0.7, 1.0, length(s.place - globals.eye.xyz) / s.step.y);
-    let far = sky(normalize(s.place - globals.eye.xyz));
+    let haze = max(away - globals.horizon.w, 0.0) / (globals.horizon.w * 4.0);
+    let fade = haze / (haze + 1.2);
+    let edge = smoothstep(0.7, 1.0, away / s.step.y);
+    let far = sky((s.place - globals.eye.xyz) / away);
     // From below, a ground is a veil that shows what stands on it.
     let alpha = select(s.color.a, 0.35, below);
     return vec4f(mix(lit, far, max(fade, edge)), alpha);

@@ -1,6 +1,8 @@
 //! Pictures in a window. The window itself is the caller's (winit's, say).
 
-use crate::{Camera, Gpu, Quality, RenderError, Renderer, Scene};
+use crate::read_back::ReadBack;
+use crate::targets::texture;
+use crate::{Camera, Gpu, Picture, Quality, RenderError, Renderer, Scene};
 
 /// The surface of a window, and a renderer for it.
 #[derive(Debug)]
@@ -22,7 +24,7 @@ pub struct Frame {
 }
 
 impl WindowSurface {
-    /// A renderer for a window of a size in pixels. `display` is what the window belongs to (winit's `OwnedDisplayHandle`).
+    /// A renderer for a window of a size in pixels; where the processor draws, a plain one. `display` is what the window belongs to (winit's `OwnedDisplayHandle`).
     ///
     /// # Errors
     /// [`RenderError::NoDriver`], [`RenderError::Device`] or [`RenderError::Surface`].
@@ -42,7 +44,16 @@ impl WindowSurface {
         }
         config.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &config);
-        let quality = Quality { shadow_map: quality.shadow_map.min(gpu.largest()), ..quality };
+        let mut quality = Quality { shadow_map: quality.shadow_map.min(gpu.largest()), ..quality };
+        if gpu.is_software() {
+            // Four samples a pixel and rounded edges cost more than all else together there.
+            quality = Quality {
+                samples: 1,
+                shadow_map: quality.shadow_map.min(1024),
+                rounded_boxes: false,
+                ..quality
+            };
+        }
         let renderer = Renderer::new(&gpu, config.format, quality);
         Ok(Self { gpu, surface, config, renderer })
     }
@@ -60,6 +71,11 @@ impl WindowSurface {
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         [self.config.width, self.config.height]
+    }
+
+    /// Tells how many columns on the right are covered by something else, such as a panel: nothing is drawn there.
+    pub fn cover_right(&mut self, columns: u32) {
+        self.renderer.covered = columns;
     }
 
     /// Tells that the window has another size.
@@ -93,6 +109,26 @@ impl WindowSurface {
     pub fn draw(&mut self, frame: &mut Frame, scene: &Scene, camera: &Camera) {
         let size = [self.config.width, self.config.height];
         self.renderer.draw(&mut frame.encoder, &frame.view, size, scene, camera);
+    }
+
+    /// Draws a scene into a picture instead of the window; `more` may draw over it, into the texture that it is given.
+    ///
+    /// # Errors
+    /// [`RenderError::ReadBack`] if the driver fails.
+    pub fn picture(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        more: impl FnOnce(&Gpu, &mut wgpu::CommandEncoder, &wgpu::TextureView),
+    ) -> Result<Picture, RenderError> {
+        let size = self.size();
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        let target = texture(&self.gpu.device, size, 1, self.config.format, usage);
+        let view = target.create_view(&Default::default());
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.renderer.draw(&mut encoder, &view, size, scene, camera);
+        more(&self.gpu, &mut encoder, &view);
+        ReadBack::new(&self.gpu.device, size).fetch(&self.gpu, encoder, &target)
     }
 
     /// Shows a picture.

@@ -360,6 +360,15 @@ impl Colliders {
         self.space_node(key).map(|s| s.kind)
     }
 
+    /// The boxes of the nodes of a space of trees ([`SpaceKind::Bvh`]) as of the last search, from the roots down; empty for
+    /// other spaces. For those who draw them.
+    pub fn tree_boxes(&self, space: SpaceKey) -> Vec<Aabb> {
+        match self.space_node(space).map(|node| &node.broad) {
+            Some(Broad::Bvh(tree)) => tree.boxes(),
+            _ => Vec::new(),
+        }
+    }
+
     /// Number of members directly in a space.
     pub fn member_count(&self, space: SpaceKey) -> usize {
         self.space_node(space).map_or(0, |s| s.broad.members().len())

@@ -83,6 +83,19 @@ impl BvhSpace {
         Self::default()
     }
 
+    /// The boxes of all nodes of its trees as of the last search, from the roots down; for those who draw them.
+    pub fn boxes(&self) -> Vec<Aabb> {
+        let boxes = core::cell::RefCell::new(Vec::new());
+        for tree in [&self.still, &self.moving] {
+            let note = |b: &Box32| {
+                boxes.borrow_mut().push(b.aabb());
+                true
+            };
+            tree.walk(note, |_| {});
+        }
+        boxes.into_inner()
+    }
+
     fn entry(&self, id: ProxyId) -> &Entry {
         &self.entries[id.0 as usize]
     }

@@ -1,0 +1,41 @@
+//! `ferrode view`, `render` and `replay` start `ferrode-view`.
+
+mod common;
+
+use common::scratch;
+use std::path::PathBuf;
+use std::process::Command;
+
+/// A copy of the command in a folder of its own.
+fn alone(test: &str) -> PathBuf {
+    let folder = scratch(test);
+    std::fs::create_dir_all(&folder).unwrap();
+    let copy = folder.join(format!("ferrode{}", std::env::consts::EXE_SUFFIX));
+    std::fs::copy(env!("CARGO_BIN_EXE_ferrode"), &copy).unwrap();
+    copy
+}
+
+#[test]
+fn without_the_viewer_one_line_says_how_to_install_it() {
+    let ferrode = alone("no-viewer");
+    for name in ["view", "render", "replay"] {
+        let done = Command::new(&ferrode).args([name, "a.sdf"]).env("PATH", "").output().unwrap();
+        let told = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(2), "{told}");
+        assert!(told.trim().lines().count() == 1 && told.contains("cargo install ferrode-view"), "{told}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn the_viewer_beside_the_command_gets_all_arguments_and_its_code_is_handed_back() {
+    use std::os::unix::fs::PermissionsExt;
+    let ferrode = alone("stand-in-viewer");
+    let viewer = ferrode.with_file_name("ferrode-view");
+    std::fs::write(&viewer, "#!/bin/sh\nprintf '[%s]' \"$@\"\nexit 4\n").unwrap();
+    std::fs::set_permissions(&viewer, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let line = ["render", "my world.sdf", "-o", "out.png", "--camera", "-30,20", "--help"];
+    let done = Command::new(&ferrode).args(line).output().unwrap();
+    let want: String = line.iter().map(|argument| format!("[{argument}]")).collect();
+    assert_eq!((String::from_utf8(done.stdout).unwrap(), done.status.code()), (want, Some(4)));
+}

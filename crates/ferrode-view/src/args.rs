@@ -1,0 +1,266 @@
+//! The command line: what can be asked for.
+
+use crate::overlay::Overlays;
+use crate::render_command::RenderArgs;
+use crate::setup::Setup;
+use crate::view_point::ViewPoint;
+use crate::viewer::input::KEYS;
+use crate::window::ViewArgs;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use ferrode::Stepper;
+use std::path::PathBuf;
+
+/// What to do.
+#[derive(Clone, Debug)]
+pub enum Task {
+    /// `ferrode-view render`
+    Render(Box<RenderArgs>),
+    /// `ferrode-view view` and `ferrode-view replay`
+    View(Box<ViewArgs>),
+}
+
+/// Switches an overlay on.
+type Switch = fn(&mut Overlays);
+
+/// Names of overlays on the command line, and what they switch on.
+const OVERLAYS: [(&str, Switch); 8] = [
+    ("contacts", |o| o.contacts = true),
+    ("forces", |o| o.forces = true),
+    ("joints", |o| o.joints = true),
+    ("joint-forces", |o| o.joint_forces = true),
+    ("centres", |o| o.centres = true),
+    ("inertia", |o| o.inertia = true),
+    ("boxes", |o| o.boxes = true),
+    ("tree", |o| o.tree = true),
+];
+
+fn number(text: &str) -> Result<f64, String> {
+    text.trim().parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| "expected a number".to_owned())
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|x| *x > 0.0).ok_or_else(|| "expected a number above 0".to_owned())
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|x| *x >= 0.0).ok_or_else(|| "expected a number of at least 0".to_owned())
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let expected = || "expected WIDTHxHEIGHT, such as 1280x720".to_owned();
+    let (width, height) = text.split_once(['x', 'X']).ok_or_else(expected)?;
+    let side = |text: &str| text.trim().parse::<u32>().ok().filter(|side| *side > 0).ok_or_else(expected);
+    Ok([side(width)?, side(height)?])
+}
+
+fn overlay(text: &str) -> Result<usize, String> {
+    OVERLAYS.iter().position(|(name, _)| *name == text).ok_or_else(|| {
+        let names: Vec<&str> = OVERLAYS.iter().map(|(name, _)| *name).collect();
+        format!("expected one of {}", names.join(", "))
+    })
+}
+
+fn stepper(text: &str) -> Result<Stepper, String> {
+    match text {
+        "direct" => Ok(Stepper::Direct),
+        "quick" => Ok(Stepper::Quick),
+        _ => Err("expected direct or quick".to_owned()),
+    }
+}
+
+fn option(name: &'static str, value: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).value_name(value).help(help)
+}
+
+fn flag(name: &'static str, help: &'static str) -> Arg {
+    Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
+}
+
+fn world_args(command: Command) -> Command {
+    command
+        .arg(
+            Arg::new("file")
+                .value_name("FILE")
+                .required(true)
+                .value_parser(value_parser!(PathBuf))
+                .help("SDF world or model, or URDF robot"),
+        )
+        .arg(flag("strict", "Stop at what is not understood or looks like a mistake"))
+        .arg(
+            option(
+                "model-path",
+                "DIR",
+                "Folder to look in for model:// and package:// names; may be repeated",
+            )
+            .action(ArgAction::Append)
+            .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(flag("ground", "Add the plane z = 0 to stand on"))
+        .arg(
+            option("fix", "LINK", "Fix a link to the world where it starts; may be repeated")
+                .action(ArgAction::Append),
+        )
+        .arg(option("dt", "H", "Step size in seconds [default: the file's]").value_parser(positive))
+        .arg(option("stepper", "NAME", "direct or quick, in place of the file's").value_parser(stepper))
+}
+
+fn picture_args(command: Command) -> Command {
+    command
+        .arg(
+            option(
+                "camera",
+                "VIEW",
+                "HEADING,PITCH in degrees (and a factor of the distance), or the eye's\n\
+                 and the target's coordinates EX,EY,EZ,TX,TY,TZ [default: -58,20]",
+            )
+            .allow_hyphen_values(true)
+            .value_parser(ViewPoint::parse),
+        )
+        .arg(option("size", "WxH", "Size in pixels [default: 1280x720]").value_parser(size))
+        .arg(
+            option(
+                "show",
+                "WHAT",
+                "Show what bodies hide: contacts, forces, joints, joint-forces, centres,\n\
+                 inertia, boxes, tree; several with commas",
+            )
+            .action(ArgAction::Append)
+            .value_delimiter(',')
+            .value_parser(overlay),
+        )
+}
+
+fn window_args(command: Command) -> Command {
+    let keys: Vec<String> = KEYS.iter().map(|(key, what)| format!("  {key:<14}{what}")).collect();
+    picture_args(command)
+        .arg(flag("paused", "Begin paused"))
+        .arg(option("speed", "X", "Slower (0.2) or faster (3) than time [default: 1]").value_parser(positive))
+        .arg(
+            option("script", "FILE", "Do what a file says with keys and mouse (docs/viewer.md)")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .after_help(format!("Keys:\n{}", keys.join("\n")))
+}
+
+/// The grammar.
+pub fn command() -> Command {
+    let view = window_args(world_args(
+        Command::new("view").about("Shows a world in a window while it is simulated"),
+    ));
+    let replay = window_args(Command::new("replay").about("Shows a recording of `ferrode run --record`"))
+        .arg(
+            Arg::new("recording")
+                .value_name("RECORDING")
+                .required(true)
+                .value_parser(value_parser!(PathBuf))
+                .help("out.jsonl or out.csv"),
+        )
+        .arg(
+            Arg::new("world")
+                .value_name("FILE")
+                .value_parser(value_parser!(PathBuf))
+                .help("The world that was recorded; without it, each link is a small box"),
+        );
+    let render =
+        picture_args(world_args(Command::new("render").about("Draws a picture or a film, without a window")))
+            .arg(
+                Arg::new("out")
+                    .short('o')
+                    .long("out")
+                    .value_name("OUT")
+                    .required(true)
+                    .value_parser(value_parser!(PathBuf))
+                    .help("out.png, out.gif, out.mp4, or a folder for numbered pictures"),
+            )
+            .arg(
+                option("time", "S", "The picture's moment, or the film's length [default: 0 and 5]")
+                    .value_parser(not_negative),
+            )
+            .arg(option("start", "S", "Where the film begins [default: 0]").value_parser(not_negative))
+            .arg(option("fps", "N", "Frames a second [default: 30, GIF 20]").value_parser(positive))
+            .arg(
+                option("speed", "X", "Slower (0.2) or faster (3) than time [default: 1]")
+                    .value_parser(positive),
+            )
+            .arg(flag("draft", "Draw as windows do: quicker, with harder shadows"))
+            .arg(flag("quiet", "No progress bar, no warnings").short('q'));
+    Command::new("ferrode-view")
+        .about("Shows SDF worlds and URDF robots as they are simulated")
+        .version(env!("CARGO_PKG_VERSION"))
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommand(view)
+        .subcommand(render)
+        .subcommand(replay)
+}
+
+fn setup_of(m: &ArgMatches) -> Setup {
+    Setup {
+        file: m.get_one::<PathBuf>("file").cloned().unwrap_or_default(),
+        strict: m.get_flag("strict"),
+        model_path: m.get_many::<PathBuf>("model-path").unwrap_or_default().cloned().collect(),
+        ground: m.get_flag("ground"),
+        fix: m.get_many::<String>("fix").unwrap_or_default().cloned().collect(),
+        dt: m.get_one("dt").copied(),
+        stepper: m.get_one("stepper").copied(),
+    }
+}
+
+fn overlays_of(m: &ArgMatches) -> Overlays {
+    let mut overlays = Overlays::default();
+    for index in m.get_many::<usize>("show").unwrap_or_default() {
+        OVERLAYS[*index].1(&mut overlays);
+    }
+    overlays
+}
+
+fn view_of(m: &ArgMatches, setup: Setup, recording: Option<PathBuf>) -> ViewArgs {
+    ViewArgs {
+        setup,
+        recording,
+        view: m.get_one("camera").copied().unwrap_or_default(),
+        size: m.get_one("size").copied().unwrap_or(SIZE),
+        overlays: overlays_of(m),
+        paused: m.get_flag("paused"),
+        speed: m.get_one("speed").copied().unwrap_or(1.0),
+        script: m.get_one::<PathBuf>("script").cloned(),
+    }
+}
+
+const SIZE: [u32; 2] = [1280, 720];
+
+/// Reads a command line.
+///
+/// # Errors
+/// It cannot be followed, or asks for help.
+pub fn parse(
+    line: impl IntoIterator<Item = impl Into<std::ffi::OsString> + Clone>,
+) -> Result<Task, clap::Error> {
+    let matches = command().try_get_matches_from(line)?;
+    match matches.subcommand() {
+        Some(("render", m)) => {
+            let out = m.get_one::<PathBuf>("out").cloned().unwrap_or_default();
+            let moves = crate::film::Format::of(&out).is_some_and(crate::film::Format::moves);
+            Ok(Task::Render(Box::new(RenderArgs {
+                setup: setup_of(m),
+                time: m.get_one("time").copied().unwrap_or(if moves { 5.0 } else { 0.0 }),
+                start: m.get_one("start").copied().unwrap_or(0.0),
+                rate: m.get_one("fps").copied(),
+                speed: m.get_one("speed").copied().unwrap_or(1.0),
+                view: m.get_one("camera").copied().unwrap_or_default(),
+                size: m.get_one("size").copied().unwrap_or(SIZE),
+                overlays: overlays_of(m),
+                draft: m.get_flag("draft"),
+                quiet: m.get_flag("quiet"),
+                out,
+            })))
+        }
+        Some(("view", m)) => Ok(Task::View(Box::new(view_of(m, setup_of(m), None)))),
+        Some(("replay", m)) => {
+            let file = m.get_one::<PathBuf>("world").cloned().unwrap_or_default();
+            let recording = m.get_one::<PathBuf>("recording").cloned();
+            Ok(Task::View(Box::new(view_of(m, Setup { file, ..Setup::default() }, recording))))
+        }
+        _ => Err(command().error(clap::error::ErrorKind::MissingSubcommand, "nothing to do")),
+    }
+}

@@ -1,0 +1,305 @@
+//! Time: running, pausing, stepping, winding back.
+
+use crate::setup::Setup;
+use crate::viewer::source::Recording;
+use ferrode::{BodyKey, Error, Pose, Stepper, Vec3, World};
+use ferrode_scene::NamedWorld;
+use ferrode_scene::description::LinkId;
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// What a step said of itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepFacts {
+    /// Wall time of the step, s.
+    pub wall: f64,
+    /// Contact points.
+    pub contacts: usize,
+    /// Deepest penetration, m.
+    pub depth: f64,
+    /// Largest natural residual of the islands that `Direct` solved; 0 for other steppers.
+    pub residual: f64,
+    /// Constraint rows.
+    pub rows: usize,
+    /// Pairs of boxes that overlapped.
+    pub pairs: usize,
+}
+
+/// A world in time: one that is simulated, or one whose past was recorded.
+#[derive(Debug)]
+pub struct Playback {
+    /// The world as it is shown.
+    pub named: NamedWorld,
+    /// Time stands still.
+    pub paused: bool,
+    /// Simulated seconds a second.
+    pub speed: f64,
+    /// Of the last step.
+    pub facts: StepFacts,
+    setup: Setup,
+    start: NamedWorld,
+    recording: Option<Recording>,
+    history: VecDeque<NamedWorld>,
+    /// Seconds that are to be simulated yet.
+    due: f64,
+    /// Simulated before the world was built anew with another step size, s.
+    earlier: f64,
+    kept: f64,
+}
+
+/// Seconds between the states that are kept for winding back.
+const KEEP_EVERY: f64 = 1.0 / 15.0;
+/// As many of them are kept.
+const KEEP: usize = 300;
+/// Of large worlds fewer states are kept: bodies in all of them.
+const KEEP_BODIES: usize = 300_000;
+
+impl Playback {
+    /// A world to simulate.
+    pub fn new(setup: Setup, named: NamedWorld) -> Self {
+        Self {
+            start: named.clone(),
+            named,
+            paused: false,
+            speed: 1.0,
+            facts: StepFacts::default(),
+            setup,
+            recording: None,
+            history: VecDeque::new(),
+            due: 0.0,
+            earlier: 0.0,
+            kept: f64::NEG_INFINITY,
+        }
+    }
+
+    /// A recording to show on a world.
+    ///
+    /// # Errors
+    /// The engine refuses a recorded pose.
+    pub fn of_recording(named: NamedWorld, recording: Recording) -> Result<Self, Error> {
+        let mut playback = Self { recording: Some(recording), ..Self::new(Setup::default(), named) };
+        playback.show_recorded()?;
+        Ok(playback)
+    }
+
+    /// Whether it shows a recording.
+    pub fn is_recording(&self) -> bool {
+        self.recording.is_some()
+    }
+
+    /// The time that is shown, s.
+    pub fn time(&self) -> f64 {
+        self.recording.as_ref().map_or(self.earlier + self.named.world.time(), Recording::time)
+    }
+
+    /// First and last time of a recording, or of what is kept.
+    pub fn range(&self) -> [f64; 2] {
+        match &self.recording {
+            Some(recording) => recording.range(),
+            None => {
+                [self.history.front().map_or(self.time(), |w| self.earlier + w.world.time()), self.time()]
+            }
+        }
+    }
+
+    /// Lets wall time pass: makes the steps that fall into it, but for no longer than `most`. `before` is called before each.
+    ///
+    /// # Errors
+    /// The engine refuses a step.
+    pub fn advance(
+        &mut self,
+        seconds: f64,
+        most: Duration,
+        mut before: impl FnMut(&mut World, f64),
+    ) -> Result<(), Error> {
+        if self.paused {
+            return Ok(());
+        }
+        self.due += seconds * self.speed;
+        if let Some(recording) = &mut self.recording {
+            let time = recording.time() + self.due;
+            self.due = 0.0;
+            recording.seek(time);
+            return self.show_recorded();
+        }
+        let start = Instant::now();
+        while self.due >= self.named.step_size() {
+            self.due -= self.named.step_size();
+            self.step(&mut before)?;
+            if start.elapsed() > most {
+                // Slower than time: let the rest go.
+                self.due = 0.0;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes one step (or shows the next recorded moment).
+    ///
+    /// # Errors
+    /// The engine refuses the step.
+    pub fn step(&mut self, before: &mut impl FnMut(&mut World, f64)) -> Result<(), Error> {
+        if let Some(recording) = &mut self.recording {
+            recording.next();
+            return self.show_recorded();
+        }
+        self.keep();
+        let h = self.named.step_size();
+        before(&mut self.named.world, h);
+        let clock = Instant::now();
+        let step = self.named.step()?;
+        self.facts = StepFacts {
+            wall: clock.elapsed().as_secs_f64(),
+            contacts: step.contacts,
+            depth: step.max_depth,
+            residual: step.dynamics.solves.iter().map(|solve| solve.residual).fold(0.0, f64::max),
+            rows: step.dynamics.rows,
+            pairs: step.pairs,
+        };
+        Ok(())
+    }
+
+    fn keep(&mut self) {
+        let time = self.named.world.time();
+        if time < self.kept + KEEP_EVERY {
+            return;
+        }
+        self.kept = time;
+        let most = (KEEP_BODIES / self.named.world.body_count().max(1)).clamp(2, KEEP);
+        while self.history.len() >= most {
+            self.history.pop_front();
+        }
+        self.history.push_back(self.named.clone());
+    }
+
+    /// Goes back to the state kept before this one; `false` if there is none.
+    ///
+    /// # Errors
+    /// The engine refuses a recorded pose.
+    pub fn back(&mut self) -> Result<bool, Error> {
+        self.paused = true;
+        if let Some(recording) = &mut self.recording {
+            recording.previous();
+            return self.show_recorded().map(|()| true);
+        }
+        while let Some(state) = self.history.pop_back() {
+            if state.world.time() < self.named.world.time() {
+                self.take(state);
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Goes back to a time as nearly as states were kept; in a recording, to any time.
+    ///
+    /// # Errors
+    /// The engine refuses a recorded pose.
+    pub fn seek(&mut self, time: f64) -> Result<(), Error> {
+        if let Some(recording) = &mut self.recording {
+            recording.seek(time);
+            return self.show_recorded();
+        }
+        while let Some(state) = self.history.pop_back() {
+            if self.earlier + state.world.time() <= time || self.history.is_empty() {
+                self.take(state);
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, state: NamedWorld) {
+        self.kept = state.world.time();
+        self.named = state;
+        self.due = 0.0;
+    }
+
+    /// Begins anew.
+    ///
+    /// # Errors
+    /// The engine refuses a recorded pose.
+    pub fn reset(&mut self) -> Result<(), Error> {
+        if let Some(recording) = &mut self.recording {
+            let [first, _] = recording.range();
+            recording.seek(first);
+            return self.show_recorded();
+        }
+        self.history.clear();
+        let stepper = self.named.world.stepper;
+        self.named = self.start.clone();
+        self.named.world.stepper = stepper;
+        (self.due, self.earlier, self.kept) = (0.0, 0.0, f64::NEG_INFINITY);
+        Ok(())
+    }
+
+    /// The stepper.
+    pub fn stepper(&self) -> Stepper {
+        self.named.world.stepper
+    }
+
+    /// Changes the stepper.
+    pub fn set_stepper(&mut self, stepper: Stepper) {
+        self.named.world.stepper = stepper;
+    }
+
+    /// Changes the step size while time runs. Softness of contacts, stops and springs depends on it, so the world is built
+    /// anew for it, and takes over where everything is and how it moves; what was shot or dropped is not taken along.
+    ///
+    /// # Errors
+    /// The step size is no positive number.
+    pub fn set_step_size(&mut self, h: f64) -> Result<(), String> {
+        if self.recording.is_some() {
+            return Ok(());
+        }
+        let time = self.time();
+        let stepper = self.named.world.stepper;
+        let mut rebuilt = self.setup.build(&self.start.scene, Some(h))?;
+        self.start = rebuilt.clone();
+        let states: Vec<State> = (0..self.named.scene.links.len()).map(|n| self.state(LinkId(n))).collect();
+        for (index, state) in states.into_iter().enumerate() {
+            let Some((body, state)) = rebuilt.link_body(LinkId(index)).zip(state) else { continue };
+            restore(&mut rebuilt.world, body, &state).map_err(|error| error.to_string())?;
+        }
+        rebuilt.world.stepper = stepper;
+        self.history.clear();
+        (self.earlier, self.kept, self.due) = (time, f64::NEG_INFINITY, 0.0);
+        self.named = rebuilt;
+        Ok(())
+    }
+
+    fn state(&self, link: LinkId) -> State {
+        let body = self.named.world.body(self.named.link_body(link)?).ok()?;
+        Some((body.pose(), body.linear_velocity(), body.angular_velocity(), body.is_enabled()))
+    }
+
+    fn show_recorded(&mut self) -> Result<(), Error> {
+        let Some(recording) = &self.recording else { return Ok(()) };
+        for (name, pose) in recording.poses() {
+            let Some(link) = self.named.link(name) else { continue };
+            let (id, inertial) = (link.id(), link.description().inertial.pose);
+            let Some(body) = self.named.link_body(id) else { continue };
+            self.named.world.body_mut(body)?.set_pose(pose * inertial)?;
+        }
+        self.named.world.sync_geoms();
+        Ok(())
+    }
+}
+
+/// Where a body is and how it moves.
+type State = Option<(Pose, Vec3, Vec3, bool)>;
+
+fn restore(
+    world: &mut World,
+    body: BodyKey,
+    (pose, linear, angular, enabled): &(Pose, Vec3, Vec3, bool),
+) -> Result<(), Error> {
+    let body = world.body_mut(body)?;
+    body.set_pose(*pose)?;
+    body.set_linear_velocity(*linear)?;
+    body.set_angular_velocity(*angular)?;
+    if !enabled {
+        body.disable();
+    }
+    Ok(())
+}

@@ -1,0 +1,86 @@
+//! The viewer in a window.
+
+mod app;
+mod interface;
+mod keys;
+
+use crate::overlay::Overlays;
+use crate::setup::Setup;
+use crate::view_point::ViewPoint;
+use crate::viewer::Viewer;
+use crate::viewer::playback::Playback;
+use crate::viewer::script::Script;
+use crate::viewer::source::Recording;
+use ferrode_scene::{BuildOptions, LoadOptions, build, load_str};
+use std::path::PathBuf;
+use winit::event_loop::EventLoop;
+
+/// What `ferrode view` and `ferrode replay` are asked for.
+#[derive(Clone, Debug)]
+pub struct ViewArgs {
+    /// The world.
+    pub setup: Setup,
+    /// A recording to show on it; without a world file its links are small boxes.
+    pub recording: Option<PathBuf>,
+    /// Where the camera stands.
+    pub view: ViewPoint,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// What to show of the engine.
+    pub overlays: Overlays,
+    /// Begin paused.
+    pub paused: bool,
+    /// Slower (below 1) or faster than time.
+    pub speed: f64,
+    /// Hands written down.
+    pub script: Option<PathBuf>,
+}
+
+/// Opens the window, and comes back when it is closed.
+///
+/// # Errors
+/// In this order: the file is wrong (the loader's report), there is no display, there is no driver.
+pub fn view(args: &ViewArgs) -> Result<(), String> {
+    let mut playback = playback(args)?;
+    playback.paused = args.paused;
+    playback.speed = args.speed;
+    let script = args.script.as_ref().map(|path| {
+        let text = std::fs::read_to_string(path);
+        let text = text.map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        Script::parse(&text).map_err(|error| format!("{}: {error}", path.display()))
+    });
+    let script = script.transpose()?;
+    let events = EventLoop::new().map_err(|_| no_display())?;
+    let viewer = Viewer::new(playback, args.size, &args.view, args.overlays);
+    let name = args.recording.as_ref().unwrap_or(&args.setup.file);
+    let title = name.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut app = app::App::new(viewer, script, format!("{title} – Ferrode"), events.owned_display_handle());
+    events.run_app(&mut app).map_err(|error| format!("the window failed: {error}"))?;
+    app.outcome()
+}
+
+fn no_display() -> String {
+    "there is no display for a window: draw pictures with `ferrode render FILE -o out.png` (or out.mp4), or open a virtual \
+     display with `xvfb-run ferrode view FILE`"
+        .to_owned()
+}
+
+fn playback(args: &ViewArgs) -> Result<Playback, String> {
+    let Some(path) = &args.recording else {
+        let (named, warnings) = args.setup.load()?;
+        for warning in warnings.iter().take(5) {
+            eprintln!("{warning}");
+        }
+        return Ok(Playback::new(args.setup.clone(), named));
+    };
+    let mut recording = Recording::read(path)?;
+    let named = if args.setup.file.as_os_str().is_empty() {
+        let text = recording.stand_in();
+        recording.rename_for_stand_in();
+        let loaded = load_str("recording", &text, &LoadOptions::default()).map_err(|e| e.to_string())?;
+        build(&loaded.scene, &BuildOptions::default()).map_err(|error| error.to_string())?
+    } else {
+        args.setup.load()?.0
+    };
+    Playback::of_recording(named, recording).map_err(|error| error.to_string())
+}
