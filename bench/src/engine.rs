@@ -84,6 +84,15 @@ impl Ferrode {
     }
 }
 
+#[allow(dead_code, reason = "not every program prints it")]
+impl Ferrode {
+    /// Largest angle between the axes of a joint, in radians.
+    pub fn axis_error(&self) -> f64 {
+        let error = |joint: &JointKey| self.world.joint_error(*joint).expect(VALID).angle;
+        self.joints.iter().map(error).fold(0.0, f64::max)
+    }
+}
+
 impl Engine for Ferrode {
     const NAME: &'static str = "ferrode";
 

@@ -1,7 +1,8 @@
 //! How the time of one exact step grows with the size of the mechanism, beside libode's `dWorldStep`.
 //!
 //! ```text
-//! cargo run --release --bin growth -- [--smallest N] [--largest N] [--case WORD] [--reps N] [--from STEP] [--steps N]
+//! cargo run --release --bin growth -- [--smallest N] [--largest N] [--case WORD] [--reps N] [--size N] [--h SECONDS] [--from STEP]
+//!     [--steps N] [--ours]
 //! ```
 //!
 //! Contacts are found by Ferrode and given to both engines. Timed are the making of contact joints, the step, and removing them. Printed per
@@ -241,7 +242,8 @@ fn heap(world: &mut dyn Builder, n: usize) {
     let mut unit = || random.next_real() - 0.5;
     for i in 0..n {
         let (x, y, z) = (i % side, i / side % side, i / (side * side));
-        let at = Vec3::new(0.7 * x as f64 + 0.1 * unit(), 0.7 * y as f64 + 0.1 * unit(), 0.5 + 0.7 * z as f64);
+        let at =
+            Vec3::new(0.7 * x as f64 + 0.1 * unit(), 0.7 * y as f64 + 0.1 * unit(), 0.5 + 0.7 * z as f64);
         let axis = Vec3::new(unit(), unit(), unit());
         world.turned_body(0.125, HALF, at, Quat::from_axis_angle(axis, 3.0 * unit()));
     }
@@ -318,7 +320,13 @@ impl Figures {
 }
 
 /// One run of ours, which also records the contacts.
-fn run(case: &Case, n: usize, method: Method, figures: &mut Figures) -> (Ferrode, Vec<Vec<ContactLine>>) {
+fn run(
+    case: &Case,
+    n: usize,
+    method: Method,
+    erp: Option<f64>,
+    figures: &mut Figures,
+) -> (Ferrode, Vec<Vec<ContactLine>>) {
     let mut engine: Ferrode = new(case, n);
     let mut lists = Vec::new();
     for step in 0..case.steps[0] + case.steps[1] {
@@ -351,22 +359,27 @@ fn main() {
     let smallest: usize = value("--smallest").and_then(|v| v.parse().ok()).unwrap_or(0);
     let reps: usize = value("--reps").and_then(|v| v.parse().ok()).unwrap_or(3);
     let wanted = value("--case").unwrap_or_default();
+    let ours_only = words.iter().any(|w| w == "--ours");
     let steps = |name: &str| value(name).and_then(|v| v.parse().ok());
     let (before, timed) = (steps("--from"), steps("--steps"));
     println!(
-        "case,n,rows,ms,factorisations,most,newton,us_per_factorisation,blocks,uncertified,fell_back,joint_error,libode_ms,ratio,quick_ms,libode_quick_ms,highest"
+        "case,n,rows,ms,factorisations,most,newton,us_per_factorisation,blocks,uncertified,fell_back,joint_error,libode_ms,ratio,quick_ms,libode_quick_ms,highest,mean_ms,axis_error"
     );
     for case in CASES.iter().filter(|c| c.name.contains(&wanted)) {
         let steps = [before.unwrap_or(case.steps[0]), timed.unwrap_or(case.steps[1])];
-        let case = &Case { steps, ..*case };
+        let h = value("--h").and_then(|v| v.parse().ok()).unwrap_or(case.h);
+        let size: Option<usize> = value("--size").and_then(|v| v.parse().ok());
+        let sizes = size.as_ref().map_or(case.sizes, core::slice::from_ref);
+        let case = &Case { steps, h, ..*case };
         let mut points = Vec::new();
-        for n in case.sizes.iter().copied().filter(|n| (smallest..=largest).contains(n)) {
+        for n in sizes.iter().copied().filter(|n| (smallest..=largest).contains(n)) {
             let (mut figures, mut quick) = (Figures::default(), Figures::default());
             let (mut theirs, mut theirs_quick) = (Vec::new(), Vec::new());
-            let (mut error, mut highest) = (0.0, 0.0);
+            let (mut error, mut axis_error, mut highest) = (0.0, 0.0, 0.0);
             for _ in 0..reps {
                 let (engine, lists) = run(case, n, Method::Direct, &mut figures);
                 error = engine.joint_error();
+                axis_error = engine.axis_error();
                 highest = engine.poses().iter().map(|(p, _)| p.z).fold(f64::NEG_INFINITY, f64::max);
                 let ode = |method: Method, times: &mut Vec<f64>| {
                     let mut engine: Ode = new(case, n);
@@ -378,11 +391,13 @@ fn main() {
                         }
                     }
                 };
-                if n <= case.most_for_libode {
+                if n <= case.most_for_libode && !ours_only {
                     ode(Method::Direct, &mut theirs);
                 }
-                ode(Method::Quick, &mut theirs_quick);
-                run(case, n, Method::Quick, &mut quick);
+                if !ours_only {
+                    ode(Method::Quick, &mut theirs_quick);
+                    run(case, n, Method::Quick, &mut quick);
+                }
             }
             theirs.sort_by(f64::total_cmp);
             theirs_quick.sort_by(f64::total_cmp);
@@ -392,7 +407,7 @@ fn main() {
             let per_factorisation = median / per_step.max(1.0);
             points.push((n as f64, per_factorisation));
             println!(
-                "{},{n},{},{:.4},{per_step:.1},{},{},{:.1},{},{},{},{error:.1e},{:.3},{:.1},{:.4},{:.4},{highest:.3}",
+                "{},{n},{},{:.4},{per_step:.1},{},{},{:.1},{},{},{},{error:.1e},{:.3},{:.1},{:.4},{:.4},{highest:.3},{:.4},{axis_error:.1e}",
                 case.name,
                 figures.rows,
                 median * 1e3,
@@ -405,7 +420,8 @@ fn main() {
                 libode * 1e3,
                 libode / median,
                 quick.median() * 1e3,
-                theirs_quick[theirs_quick.len() / 2] * 1e3
+                theirs_quick.get(theirs_quick.len() / 2).copied().unwrap_or(f64::NAN) * 1e3,
+                figures.seconds.iter().sum::<f64>() / figures.seconds.len() as f64 * 1e3
             );
         }
         println!("{} exponent {:.2}", case.name, exponent(&points[points.len() / 2..]));
