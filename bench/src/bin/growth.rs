@@ -320,13 +320,7 @@ impl Figures {
 }
 
 /// One run of ours, which also records the contacts.
-fn run(
-    case: &Case,
-    n: usize,
-    method: Method,
-    erp: Option<f64>,
-    figures: &mut Figures,
-) -> (Ferrode, Vec<Vec<ContactLine>>) {
+fn run(case: &Case, n: usize, method: Method, figures: &mut Figures) -> (Ferrode, Vec<Vec<ContactLine>>) {
     let mut engine: Ferrode = new(case, n);
     let mut lists = Vec::new();
     for step in 0..case.steps[0] + case.steps[1] {
