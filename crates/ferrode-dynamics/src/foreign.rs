@@ -88,7 +88,9 @@ impl World {
         random: &mut OdeRandom,
         moved: MovedObserver<'_>,
     ) -> Result<StepReport, Error> {
-        self.step_in_full(stepper, h, random, moved)
+        let mut report = StepReport::default();
+        self.step_in_full(stepper, h, random, moved, &mut report)?;
+        Ok(report)
     }
 
     /// A joint's recorded forces, to mark them before a step.

@@ -71,6 +71,15 @@ impl IslandSolve {
 }
 
 impl StepReport {
+    /// Empties the report, but for its memory.
+    pub(crate) fn clear(&mut self) {
+        let mut solves = core::mem::take(&mut self.solves);
+        let mut quarantined = core::mem::take(&mut self.quarantined);
+        solves.clear();
+        quarantined.clear();
+        *self = Self { solves, quarantined, ..Self::default() };
+    }
+
     pub(crate) fn count_exit(&mut self, exit: Option<ferrode_lcp::sor::SorExit>) {
         use ferrode_lcp::sor::SorExit;
         match exit {

@@ -4,12 +4,20 @@ use crate::rows::RowCount;
 use crate::step::JointSpan;
 use std::collections::VecDeque;
 
+/// The three classes, empty between calls.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Memory {
+    unbounded: VecDeque<JointSpan>,
+    mixed: VecDeque<JointSpan>,
+    bounded: VecDeque<JointSpan>,
+}
+
 /// Puts an island's joints into ODE's order: those without bounds, mixed ones, bounded ones.
 ///
 /// Within the classes ODE's two-ended scheme decides; only rounding, and the choice among equal solutions, depends on
 /// it.
-pub(crate) fn arrange(spans: &mut Vec<JointSpan>) {
-    let (mut unbounded, mut mixed, mut bounded) = (VecDeque::new(), VecDeque::new(), VecDeque::new());
+pub(super) fn arrange(spans: &mut Vec<JointSpan>, memory: &mut Memory) {
+    let Memory { unbounded, mixed, bounded } = memory;
     let mut forward = true;
     for span in spans.drain(..) {
         match class(span.count) {
@@ -43,7 +51,7 @@ pub(crate) fn arrange(spans: &mut Vec<JointSpan>) {
             }
         }
     }
-    spans.extend(unbounded.into_iter().chain(mixed).chain(bounded));
+    spans.extend(unbounded.drain(..).chain(mixed.drain(..)).chain(bounded.drain(..)));
 }
 
 enum Class {
@@ -76,7 +84,7 @@ mod tests {
             .enumerate()
             .map(|(i, count)| JointSpan { joint: i as u32, bodies: [0; 2], first: 0, count })
             .collect();
-        arrange(&mut spans);
+        arrange(&mut spans, &mut super::Memory::default());
         let order: Vec<u32> = spans.iter().map(|s| s.joint).collect();
         assert_eq!(order, [5, 3, 4, 1, 7, 2, 6, 0]);
     }

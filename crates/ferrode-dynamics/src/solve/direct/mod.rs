@@ -11,12 +11,10 @@ mod dense;
 mod sparse;
 mod warm;
 
-pub(crate) use arrange::arrange;
-
 use super::{FreeMotion, Solved, free_motions, right_hand_side};
 use crate::report::{DirectMethod, IslandSolve};
 use crate::rows::{NO_FRICTION_INDEX, Row};
-use crate::step::{Island, SolverBody};
+use crate::step::{Island, JointSpan, SolverBody};
 use ferrode_math::Vec3;
 
 /// What bounds the friction of contacts whose bounds hang on the normal force.
@@ -64,6 +62,7 @@ impl Default for DirectSettings {
 /// Memory of the stepper. Dropping it costs time and changes nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
+    arrangement: arrange::Memory,
     free: Vec<FreeMotion>,
     system: RowSystem,
     spans: SpansByBody,
@@ -87,6 +86,11 @@ struct RowSystem {
 struct SpansByBody {
     starts: Vec<usize>,
     at_body: Vec<(u32, u32)>,
+}
+
+/// Puts an island's joints into ODE's order.
+pub(crate) fn arrange(spans: &mut Vec<JointSpan>, work: &mut Workspace) {
+    arrange::arrange(spans, &mut work.arrangement);
 }
 
 /// Begins a step.
