@@ -227,7 +227,7 @@ impl Workspace {
             }
         }
         for (body, [l, a]) in island.bodies.iter().zip(&mut self.pushed) {
-            *l = *l * body.inv_mass;
+            *l *= body.inv_mass;
             *a = body.inv_inertia * *a;
         }
     }
