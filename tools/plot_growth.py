@@ -4,7 +4,7 @@ import math
 import sys
 
 COLOURS = {"chain": "#1f77b4", "tree": "#2ca02c", "tower": "#8c564b", "wall": "#ff7f0e", "pyramid": "#9467bd",
-           "pile": "#d62728", "grid": "#17becf"}
+           "pile": "#d62728", "heap": "#e377c2", "grid": "#17becf"}
 W, H, LEFT, TOP, RIGHT, BOTTOM = 860, 560, 70, 30, 170, 50
 X, Y = (1, 4), (-3, 3)  # decades of bodies and of milliseconds
 
