@@ -27,10 +27,12 @@ pub struct Sky {
     pub zenith: Color,
     /// At eye level; the ground fades into it.
     pub horizon: Color,
+    /// How much of it clouds hide, from 0 to 1.
+    pub clouds: f32,
 }
 
 impl Default for Sky {
     fn default() -> Self {
-        Self { zenith: Color::rgb(148, 178, 214), horizon: Color::rgb(226, 232, 238) }
+        Self { zenith: Color::rgb(148, 178, 214), horizon: Color::rgb(226, 232, 238), clouds: 0.0 }
     }
 }

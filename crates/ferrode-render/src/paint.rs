@@ -93,6 +93,10 @@ pub enum Pattern {
     Wood = 2,
     /// Eight fields of two shades, that show how a ball turns.
     Octants = 3,
+    /// Blotches as of earth and grass, from above.
+    Earth = 4,
+    /// Clouds: white shines through in soft spots.
+    Clouds = 5,
 }
 
 /// How a surface looks.

@@ -455,7 +455,7 @@ fn globals(scene: &Scene, camera: &Camera, sun: &SunView, size: [u32; 2], shadow
             four(sun.direction, f64::from(scene.light.strength)),
             tint(scene.sky.zenith, scene.light.shadow),
             tint(scene.sky.horizon, fade as f32),
-            four(axes.right * (tall * aspect), 0.0),
+            four(axes.right * (tall * aspect), f64::from(scene.sky.clouds.clamp(0.0, 1.0))),
             four(axes.up * tall, 0.0),
             four(axes.forward, 0.0),
             [size[0] as f32, size[1] as f32, shadow_side as f32, sun.texel as f32],
@@ -463,6 +463,9 @@ fn globals(scene: &Scene, camera: &Camera, sun: &SunView, size: [u32; 2], shadow
     };
     core::array::from_fn(|n| vectors[n / 4][n % 4])
 }
+
+/// Patterns on a ground look the same so much further, m (`PERIOD` in the shader).
+const PATTERN_PERIOD: f64 = 64.0;
 
 /// A ground as the shader wants it.
 fn plane(ground: &Ground, origin: Vec3, camera: &Camera) -> [f32; 20] {
@@ -473,7 +476,10 @@ fn plane(ground: &Ground, origin: Vec3, camera: &Camera) -> [f32; 20] {
     let middle = camera.target - normal * (camera.target - ground.point).dot(normal);
     // The grid counts from the crossing nearest to the middle, of those at whole tens of steps from the given point: single
     // precision is enough there.
-    let tens = ground.grid * 10.0;
+    let (grid, tens) = match ground.pattern {
+        crate::Pattern::Plain => (ground.grid, ground.grid * 10.0),
+        _ => (0.0, PATTERN_PERIOD),
+    };
     let snap = |axis: Vec3| {
         let along = (middle - ground.point).dot(axis);
         if tens > 0.0 { (along / tens).round() * tens } else { along }
@@ -481,12 +487,13 @@ fn plane(ground: &Ground, origin: Vec3, camera: &Camera) -> [f32; 20] {
     let point = ground.point + first * snap(first) + second * snap(second);
     let reach = (60.0 * camera.distance()).max(60.0);
     let mut out = [0.0; 20];
-    let parts = [(point - origin, ground.grid), (first, reach), (second, 0.0)];
+    let parts = [(point - origin, grid), (first, reach), (second, 0.0)];
     for (n, (v, w)) in parts.into_iter().enumerate() {
         out[4 * n..4 * n + 3].copy_from_slice(&to_f32(v));
         out[4 * n + 3] = w as f32;
     }
     out[12..16].copy_from_slice(&ground.color.linear());
     out[16..19].copy_from_slice(&to_f32(middle - origin));
+    out[19] = f32::from(ground.pattern as u8);
     out
 }

@@ -2,7 +2,7 @@
 
 use crate::instance::{Instance, instance};
 use crate::mesh::to_f32;
-use crate::{Color, Light, Mesh, Paint, Sky};
+use crate::{Color, Light, Mesh, Paint, Pattern, Sky};
 use ferrode_math::{Pose, Quat, Vec3};
 use std::sync::{Arc, LazyLock};
 
@@ -27,11 +27,14 @@ pub struct Ground {
     pub color: Color,
     /// Distance between the grid's lines, m; each tenth is stronger. 0 for no grid.
     pub grid: f64,
+    /// How its colour varies; only a plain one has a grid.
+    pub pattern: Pattern,
 }
 
 impl Default for Ground {
     fn default() -> Self {
-        Self { point: Vec3::ZERO, normal: Vec3::Z, color: Color::rgb(206, 203, 196), grid: 1.0 }
+        let color = Color::rgb(206, 203, 196);
+        Self { point: Vec3::ZERO, normal: Vec3::Z, color, grid: 1.0, pattern: Pattern::Plain }
     }
 }
 
@@ -193,6 +196,13 @@ impl Scene {
         self.add(&SHAPES.cone, pose, sizes, radius + 0.5 * length, paint, layer);
     }
 
+    /// A mesh whose corners are scaled along its own axes, and whose cores (see [`Vertex`](crate::Vertex)) by half lengths:
+    /// [`Mesh::capsule`], say, of radius and half length.
+    pub fn stretched(&mut self, pose: &Pose, mesh: &Arc<Mesh>, radii: Vec3, half: Vec3, paint: Paint) {
+        let radius = mesh.radius() * radii.abs_max() + half.length();
+        self.add(mesh, pose, [radii, half], radius, paint, Layer::World);
+    }
+
     /// A mesh, scaled along its own axes.
     pub fn mesh(&mut self, pose: &Pose, mesh: &Arc<Mesh>, scale: Vec3, paint: Paint) {
         let radius = mesh.radius() * scale.abs_max();
@@ -242,10 +252,23 @@ impl Scene {
 
     /// The edges of a mesh's triangles, scaled along its own axes.
     pub fn wire_mesh(&mut self, pose: &Pose, mesh: &Mesh, scale: Vec3, width: f32, color: Color) {
+        self.wire_stretched(pose, mesh, [scale, Vec3::ZERO], width, color);
+    }
+
+    /// The edges of a mesh's triangles, scaled by radii and half lengths as by [`Scene::stretched`].
+    pub fn wire_stretched(
+        &mut self,
+        pose: &Pose,
+        mesh: &Mesh,
+        [radii, half]: [Vec3; 2],
+        width: f32,
+        color: Color,
+    ) {
         for t in mesh.indices.chunks_exact(3) {
             let corner = |i: usize| {
-                let local = Vec3::from_array(mesh.vertices[t[i] as usize].local.map(f64::from));
-                pose.transform_point(local.component_mul(scale))
+                let vertex = &mesh.vertices[t[i] as usize];
+                let [local, core] = [vertex.local, vertex.core].map(|v| Vec3::from_array(v.map(f64::from)));
+                pose.transform_point(local.component_mul(radii) + core.component_mul(half))
             };
             for (a, b) in [(0, 1), (1, 2), (2, 0)] {
                 self.line(corner(a), corner(b), width, color, Layer::World);

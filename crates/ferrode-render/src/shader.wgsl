@@ -7,7 +7,7 @@ struct Globals {
     sun: vec4f,             // unit vector towards the sun; w: strength
     zenith: vec4f,          // w: how dark shadows are
     horizon: vec4f,         // w: where the ground begins to fade, m from the eye
-    right: vec4f,           // camera axes, scaled to the edges of the picture
+    right: vec4f,           // camera axes, scaled to the edges of the picture; w: how much of the sky clouds hide
     up: vec4f,
     forward: vec4f,
     screen: vec4f,          // width and height in pixels; z: texels of the shadow map a side (0: none); w: metres a texel
@@ -40,6 +40,7 @@ struct Surface {
     @location(2) local: vec3f,
     @location(3) @interpolate(flat) color: vec4f,
     @location(4) @interpolate(flat) kind: vec2f,   // pattern, flags
+    @location(5) own: vec3f,                       // normal in the shape's own coordinates
 };
 
 fn placed(s: Shape) -> vec3f {
@@ -57,6 +58,7 @@ fn shape_vertex(s: Shape) -> Surface {
     out.clip = globals.clip * vec4f(out.place, 1.0);
     out.color = s.color;
     out.kind = vec2f(s.radii.w, s.half.w);
+    out.own = n;
     return out;
 }
 
@@ -65,9 +67,76 @@ fn shadow_vertex(s: Shape) -> @builtin(position) vec4f {
     return globals.sun_clip * vec4f(placed(s), 1.0);
 }
 
-fn patterned(color: vec3f, pattern: f32, p: vec3f) -> vec3f {
+// Patterns on a ground repeat themselves after so many metres; lattices of noise have a whole number of fields in it.
+const PERIOD: f32 = 64.0;
+
+// A number from 0 to 1 for a corner of a lattice (Jarzynski and Olano, "Hash functions for GPU rendering", JCGT 9(3), 2020:
+// the generator "pcg", applied to each coordinate in turn).
+fn scrambled(n: u32) -> u32 {
+    let state = n * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+fn corner(cell: vec2f, fields: f32) -> f32 {
+    let turn = cell - fields * floor(cell / fields);
+    return f32(scrambled(u32(turn.x) + scrambled(u32(turn.y))) >> 8u) / 16777216.0;
+}
+
+// Smooth noise with a mean of 0.5; `fields` a period.
+fn noise(p: vec2f, fields: f32) -> f32 {
+    let at = p * (fields / PERIOD);
+    let cell = floor(at);
+    let part = at - cell;
+    let s = part * part * (3.0 - 2.0 * part);
+    let low = mix(corner(cell, fields), corner(cell + vec2f(1.0, 0.0), fields), s.x);
+    let high = mix(corner(cell + vec2f(0.0, 1.0), fields), corner(cell + vec2f(1.0, 1.0), fields), s.x);
+    return mix(low, high, s.y);
+}
+
+// Several noises, finer and fainter; those finer than some pixels (of `pixel` m) are left out before they flicker.
+fn layered(p: vec2f, first: f32, count: u32, pixel: f32) -> f32 {
+    var sum = 0.5;
+    var strength = 0.5;
+    var fields = first;
+    for (var i = 0u; i < count; i++) {
+        let seen = clamp(PERIOD / fields / max(pixel, 1e-6) * 0.5 - 0.5, 0.0, 1.0);
+        sum += strength * seen * (noise(p, fields) - 0.5);
+        strength *= 0.6;
+        fields *= 2.0;
+    }
+    return clamp(sum, 0.0, 1.0);
+}
+
+fn earthen(color: vec3f, p: vec2f, pixel: f32) -> vec3f {
+    let blotches = smoothstep(0.3, 0.7, layered(p, 32.0, 4u, pixel));
+    let grains = layered(p + vec2f(17.3, 5.1), 1024.0, 3u, pixel);
+    let tint = mix(vec3f(0.62, 0.60, 0.42), vec3f(0.60, 0.68, 0.44), blotches);
+    return color * tint * (0.72 + 0.5 * grains);
+}
+
+fn cloudy(p: vec2f, pixel: f32) -> f32 {
+    return smoothstep(0.45, 0.78, layered(p, 16.0, 5u, pixel));
+}
+
+// A shape's pattern by the two coordinates that its surface runs along most.
+fn unrolled(p: vec3f, normal: vec3f) -> vec2f {
+    let n = abs(normal);
+    if n.z >= n.x && n.z >= n.y {
+        return p.xy;
+    }
+    return select(p.xz, p.yz, n.x > n.y);
+}
+
+fn patterned(color: vec3f, pattern: f32, p: vec3f, normal: vec3f) -> vec3f {
     if pattern < 0.5 {
         return color;
+    }
+    if pattern > 4.5 {
+        return mix(color * vec3f(0.55, 0.72, 0.95), color, cloudy(unrolled(p, normal) * 4.0, 0.0));
+    }
+    if pattern > 3.5 {
+        return earthen(color, unrolled(p, normal) * 2.0, 0.0);
     }
     if pattern < 1.5 {
         let field = floor(p * 4.0 + vec3f(1e-3));
@@ -153,7 +222,7 @@ fn glossy(color: vec3f, place: vec3f, normal: vec3f, pixel: vec2f) -> vec3f {
 
 @fragment
 fn shape_fragment(s: Surface, @builtin(front_facing) front: bool) -> @location(0) vec4f {
-    let color = patterned(s.color.rgb, s.kind.x, s.local);
+    let color = patterned(s.color.rgb, s.kind.x, s.local, s.own);
     if s.kind.y > 0.5 {
         return vec4f(color, s.color.a);
     }
@@ -175,7 +244,14 @@ struct Backdrop {
 fn sky(along: vec3f) -> vec3f {
     let height = clamp(along.z, 0.0, 1.0);
     let low = 1.0 - height;
-    return mix(globals.horizon.rgb, globals.zenith.rgb, 1.0 - low * low);
+    let clear = mix(globals.horizon.rgb, globals.zenith.rgb, 1.0 - low * low);
+    if globals.right.w <= 0.0 || along.z < 0.01 {
+        return clear;
+    }
+    // Clouds lie on a plane overhead, and melt into the horizon.
+    let p = along.xy / along.z * 6.0;
+    let clouds = cloudy(p, 12.0 * length(globals.up.xyz) / (globals.screen.y * along.z * along.z));
+    return mix(clear, vec3f(0.93), globals.right.w * clouds * smoothstep(0.02, 0.25, along.z));
 }
 
 @vertex
@@ -199,7 +275,7 @@ struct Plane {
     @location(1) first: vec4f,    // unit vectors along it; w: how far it is drawn
     @location(2) second: vec4f,
     @location(3) color: vec4f,
-    @location(4) middle: vec4f,   // the point of it that is nearest to the target
+    @location(4) middle: vec4f,   // the point of it that is nearest to the target; w: pattern
 };
 
 struct Floor {
@@ -208,7 +284,7 @@ struct Floor {
     @location(1) grid: vec2f,
     @location(2) @interpolate(flat) color: vec4f,
     @location(3) @interpolate(flat) normal: vec3f,
-    @location(4) @interpolate(flat) step: vec2f,
+    @location(4) @interpolate(flat) step: vec3f,   // distance of grid lines, how far it is drawn, pattern
 };
 
 @vertex
@@ -221,7 +297,7 @@ fn ground_vertex(@builtin(vertex_index) n: u32, plane: Plane) -> Floor {
     out.clip = globals.clip * vec4f(out.place, 1.0);
     out.color = plane.color;
     out.normal = cross(plane.first.xyz, plane.second.xyz);
-    out.step = vec2f(plane.point.w, plane.first.w);
+    out.step = vec3f(plane.point.w, plane.first.w, plane.middle.w);
     return out;
 }
 
@@ -242,6 +318,14 @@ fn ground_fragment(s: Floor) -> @location(0) vec4f {
     var normal = s.normal;
     let below = dot(normal, globals.eye.xyz - s.place) < 0.0;
     var color = s.color.rgb;
+    let footprint = max(length(fwidth(s.grid)), 1e-6);
+    if s.step.z > 4.5 {
+        color *= mix(vec3f(0.55, 0.72, 0.95), vec3f(1.0), cloudy(s.grid, footprint));
+    } else if s.step.z > 3.5 {
+        color = earthen(color, s.grid, footprint);
+    } else if s.step.z > 0.5 {
+        color = patterned(color, s.step.z, vec3f(s.grid, 0.0), vec3f(0.0, 0.0, 1.0));
+    }
     if s.step.x > 0.0 {
         let fine = ruled(s.grid, s.step.x, 1.0);
         let strong = ruled(s.grid, s.step.x * 10.0, 1.6);

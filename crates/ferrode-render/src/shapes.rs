@@ -77,22 +77,43 @@ fn round(sides: u32, rings: u32, core: f64) -> Mesh {
 
 /// Radii: the radius along each axis.
 pub fn sphere() -> Mesh {
-    round(32, 16, 0.0)
+    Mesh::sphere(32)
 }
 
 /// Radii: the radius; half: half the length without caps, along z.
 pub fn capsule() -> Mesh {
-    round(24, 12, 1.0)
+    Mesh::capsule(24)
 }
 
 /// Radii: the radius; half: half the length, along z.
 pub fn cylinder() -> Mesh {
-    const SIDES: u32 = 36;
-    let mut builder = Builder::default();
-    builder.revolve(&[[1.0, 0.0, -1.0, 1.0, 0.0], [1.0, 0.0, 1.0, 1.0, 0.0]], SIDES);
-    builder.disc(1.0, SIDES);
-    builder.disc(-1.0, SIDES);
-    builder.mesh()
+    Mesh::cylinder(36)
+}
+
+impl Mesh {
+    /// A ball of radius 1 with so many corners round its equator; at least 4, a multiple of 4.
+    pub fn sphere(sides: u32) -> Self {
+        let sides = sides.clamp(4, 1024).next_multiple_of(4);
+        round(sides, sides / 2, 0.0)
+    }
+
+    /// A capsule along z, of radius 1 and half length 1, with so many corners round it (at least 4, a multiple of 4); for
+    /// [`Scene::stretched`](crate::Scene::stretched).
+    pub fn capsule(sides: u32) -> Self {
+        let sides = sides.clamp(4, 1024).next_multiple_of(4);
+        round(sides, sides / 2, 1.0)
+    }
+
+    /// A cylinder along z, of radius 1 and half length 1, with so many corners round it (at least 3); for
+    /// [`Scene::stretched`](crate::Scene::stretched).
+    pub fn cylinder(sides: u32) -> Self {
+        let sides = sides.clamp(3, 1024);
+        let mut builder = Builder::default();
+        builder.revolve(&[[1.0, 0.0, -1.0, 1.0, 0.0], [1.0, 0.0, 1.0, 1.0, 0.0]], sides);
+        builder.disc(1.0, sides);
+        builder.disc(-1.0, sides);
+        builder.mesh()
+    }
 }
 
 /// Radii: the radius of the base in x and y, the height in z (it scales normals only); half: half the height. The tip is up.
