@@ -5,14 +5,15 @@ set -eu
 
 usage() {
     cat <<'TEXT'
-usage: install.sh --prefix DIR [--single] [--no-trimesh] [--no-debug] [--from DIR] [--uninstall]
+usage: install.sh --prefix DIR [--single] [--no-trimesh] [--no-debug] [--drawstuff] [--from DIR] [--uninstall]
 
   --prefix DIR    where to: DIR/lib, DIR/include/ode, DIR/bin (DESTDIR is put before it while copying)
   --single        dReal is float: the library goes to DIR/lib/ode-single, its files are ode-single.pc,
                   ode-single-config and the CMake package ode-single
   --no-trimesh    without triangle meshes
   --no-debug      release mode: arguments are not reported to the debug handler
-  --from DIR      take libode.so and libode.a from there instead of building them
+  --drawstuff     also libdrawstuff, on which ODE's demo programs show themselves (docs/drawstuff.md)
+  --from DIR      take libode.so and libode.a (and libdrawstuff.so) from there instead of building them
   --uninstall     remove what was installed
 TEXT
 }
@@ -22,7 +23,7 @@ fail() {
     exit 1
 }
 
-prefix= from= features= uninstall= precision=dDOUBLE suffix=
+prefix= from= features= uninstall= drawstuff= precision=dDOUBLE suffix=
 while [ $# -gt 0 ]; do
     case $1 in
         --prefix) [ $# -gt 1 ] || fail "--prefix needs a folder"; prefix=$2; shift ;;
@@ -32,6 +33,7 @@ while [ $# -gt 0 ]; do
         --single) precision=dSINGLE suffix=-single features="$features single" ;;
         --no-trimesh) features="$features no-trimesh" ;;
         --no-debug) features="$features no-debug" ;;
+        --drawstuff) drawstuff=yes ;;
         --uninstall) uninstall=yes ;;
         -h | --help) usage; exit 0 ;;
         *) usage >&2; fail "unknown option $1" ;;
@@ -57,11 +59,13 @@ if [ -n "$uninstall" ]; then
     for name in $real libode.so.8 libode.so libode.a; do rm -f "$root/$lib/$name"; done
     rm -f "$root/lib/pkgconfig/ode$suffix.pc" "$root/bin/ode$suffix-config"
     rm -f "$root/$cmake/ode$suffix-config.cmake" "$root/$cmake/ode$suffix-config-version.cmake"
-    # Both precisions share the headers.
+    # Both precisions share the headers, and libdrawstuff.
     if ! [ -e "$other" ]; then
+        for name in libdrawstuff.so.0 libdrawstuff.so pkgconfig/drawstuff.pc; do rm -f "$root/lib/$name"; done
+        for header in drawstuff.h version.h; do rm -f "$root/include/drawstuff/$header"; done
         for header in "$source"/crates/libode/include/ode/*.h; do rm -f "$root/include/ode/${header##*/}"; done
     fi
-    for folder in "$lib" "$cmake" lib/cmake lib/pkgconfig lib include/ode include bin; do
+    for folder in "$lib" "$cmake" lib/cmake lib/pkgconfig lib include/ode include/drawstuff include bin; do
         rmdir "$root/$folder" 2>/dev/null || true
     done
     echo "removed from $root"
@@ -74,6 +78,9 @@ if [ -z "$from" ]; then
     name=$(echo "$features" | tr -d ' ')
     from=$from${name:+/ode-$name}
     (cd "$source" && cargo build --release --locked -p libode --features "$features" --target-dir "$from")
+    if [ -n "$drawstuff" ]; then
+        (cd "$source" && cargo build --release --locked -p drawstuff --target-dir "$from")
+    fi
     from=$from/release
 fi
 [ -e "$from/libode.so" ] && [ -e "$from/libode.a" ] || fail "no libode.so and libode.a in $from"
@@ -162,4 +169,27 @@ else()
   endif()
 endif()
 TEXT
+
+if [ -n "$drawstuff" ]; then
+    [ -e "$from/libdrawstuff.so" ] || fail "no libdrawstuff.so in $from"
+    mkdir -p "$root/lib" "$root/include/drawstuff"
+    cp "$from/libdrawstuff.so" "$root/lib/libdrawstuff.so.0.new"
+    if command -v strip >/dev/null; then strip --strip-debug "$root/lib/libdrawstuff.so.0.new"; fi
+    chmod 755 "$root/lib/libdrawstuff.so.0.new"
+    mv "$root/lib/libdrawstuff.so.0.new" "$root/lib/libdrawstuff.so.0"
+    ln -sf libdrawstuff.so.0 "$root/lib/libdrawstuff.so"
+    cp "$source"/crates/drawstuff/include/drawstuff/*.h "$root/include/drawstuff/"
+    chmod 644 "$root"/include/drawstuff/*.h
+    cat > "$root/lib/pkgconfig/drawstuff.pc" <<TEXT
+prefix=$prefix
+libdir=\${prefix}/lib
+includedir=\${prefix}/include
+
+Name: drawstuff
+Description: DrawStuff, on which ODE's demo programs show themselves (Ferrode's)
+Version: $version
+Libs: -L\${libdir} -ldrawstuff
+Cflags: -I\${includedir}
+TEXT
+fi
 echo "installed in $root"
