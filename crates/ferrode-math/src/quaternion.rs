@@ -116,7 +116,8 @@ impl Quaternion<f64> {
     /// The unit quaternion along `self`, or `None` if `self` is zero or not finite.
     pub fn normalized(self) -> Option<Self> {
         let l = self.dot(self);
-        if l > 0.0 && l.is_finite() {
+        // Close to the least normal number, squares have lost digits.
+        if l > f64::MIN_POSITIVE / f64::EPSILON && l.is_finite() {
             return Some(self.scale(1.0 / l.sqrt()));
         }
         // The square over- or underflowed: scale first.
@@ -224,6 +225,17 @@ impl<T: Scalar> Neg for Quaternion<T> {
 #[cfg(test)]
 mod tests {
     use crate::{Quat, Vec3};
+
+    #[test]
+    fn normalized_survives_extreme_lengths() {
+        for scale in [1e-320, 1e-300, 1e-170, 1e-161, 1e-160, 1e-155, 1e-149, 1e-140, 1.0, 1e150, 1e200, 1e300] {
+            let q = Quat::new(0.0, 3.0 * scale, 0.0, 4.0 * scale).normalized().unwrap();
+            assert!((q.dot(q) - 1.0).abs() < 1e-15, "scale {scale}: {q:?}");
+            assert!((q.x - 0.6).abs() < 1e-3 && (q.z - 0.8).abs() < 1e-3, "scale {scale}: {q:?}");
+        }
+        assert_eq!(Quat::new(0.0, 0.0, 0.0, 0.0).normalized(), None);
+        assert_eq!(Quat::new(f64::NAN, 1.0, 0.0, 0.0).normalized(), None);
+    }
 
     #[test]
     fn products_match_the_recorded_ones() {

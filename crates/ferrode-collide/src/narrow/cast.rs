@@ -1,6 +1,7 @@
 //! Where a moving shape first touches another.
 
 use super::distance::{body_distance, plane_distance};
+use super::field_cells::FAR;
 use super::support::{Body, difference};
 use super::triangle::bounds;
 use crate::space::Probe;
@@ -20,58 +21,141 @@ pub struct CastHit {
     pub depth: f64,
 }
 
-/// Most stretches of a path over a field: beyond, a path over a field without end meets nothing.
-const STRETCHES: usize = 4096;
+/// Of a field without end: cells along either axis below the body that a cast looks at, those below its middle, and how
+/// many cells in all.
+const MOST_ACROSS: f64 = 128.0;
+const MOST_CELLS: usize = 1 << 18;
 
-/// The first hit with a triangle of a field, in whose coordinates the body is.
-fn body_field(body: &Body<'_>, path: Vec3, field: &Heightfield) -> Option<CastHit> {
+/// The first hit with a triangle of a field, in whose coordinates the body is; before `best`, if there is one. Of a field
+/// without end it looks at no more than `cells`.
+///
+/// The cells come in the order in which the body's box gets to them: strip by strip across the longer part of the path, in
+/// each the cells that the box passes while it is over the strip.
+fn body_field(
+    body: &Body<'_>,
+    path: Vec3,
+    field: &Heightfield,
+    mut cells: usize,
+    mut best: Option<CastHit>,
+) -> Option<CastHit> {
     let start = bounds(body);
-    let (from, to) = within(&start, path, &field.aabb(&Frame::IDENTITY))?;
-    // A stretch at a time, as long as the body or a cell: the box around all of a slanting path holds far more cells.
+    let Some(whole) = within(&start, path, &field.aabb(&Frame::IDENTITY)) else { return best };
+    if !start.is_finite() {
+        return best;
+    }
     let (sx, sz) = field.cell();
-    let e = start.extent();
-    let along = |p: f64, e: f64, cell: f64| p.abs() / (e + cell);
-    let stretches = ((to - from) * along(path.x, e.x, sx).max(along(path.z, e.z, sz))).max(1.0);
-    let step = (to - from) / stretches;
-    let mut best: Option<CastHit> = None;
-    for k in 0..(stretches.ceil() as usize).min(STRETCHES) {
-        let (here, there) = (from + step * k as f64, (from + step * (k + 1) as f64).min(to));
-        if best.is_some_and(|b| b.fraction < here) {
+    let (size, sides) = ([sx, sz], [field.width(), field.depth()]);
+    let counts = [field.columns(), field.rows()];
+    let along = [path.x, path.z];
+    // In cells from the field's corner.
+    let lows = [start.min.x, start.min.z];
+    let highs = [start.max.x, start.max.z];
+    let at = [0, 1].map(|k| (0.5 * (lows[k] + highs[k]) + 0.5 * sides[k]) / size[k]);
+    let speed = [0, 1].map(|k| along[k] / size[k]);
+    let half = [0, 1].map(|k| {
+        let half = 0.5 * (highs[k] - lows[k]) / size[k];
+        // A hair more, against rounding.
+        let half = if field.is_wrapped() { half.min(0.5 * MOST_ACROSS) } else { half };
+        half * (1.0 + 1e-9) + 1e-9 * (1.0 + at[k].abs().min(1e6))
+    });
+    // The numbers of the cells along axis `k` that the box passes between two times, in its order.
+    let range = |k: usize, from: f64, to: f64| {
+        let (p, q) = (at[k] + speed[k] * from, at[k] + speed[k] * to);
+        let (low, high) = ((p.min(q) - half[k]).floor(), (p.max(q) + half[k]).floor());
+        let (low, high) = if field.is_wrapped() {
+            (low.max(-FAR), high.min(FAR))
+        } else {
+            (low.max(0.0), high.min(counts[k] as f64 - 2.0))
+        };
+        (low as i64, high as i64)
+    };
+    let ordered = |(low, high): (i64, i64), k: usize| {
+        let back = speed[k] < 0.0;
+        (0..=(high - low).max(-1)).map(move |i| if back { high - i } else { low + i })
+    };
+    // When the box is between two grid lines.
+    let during = |k: usize, i: i64| -> Option<(f64, f64)> {
+        let (low, high) = (i as f64 - half[k] - at[k], (i + 1) as f64 + half[k] - at[k]);
+        if speed[k] == 0.0 {
+            return (low <= 0.0 && high >= 0.0).then_some(whole);
+        }
+        let (s, t) = (low / speed[k], high / speed[k]);
+        let (from, to) = (s.min(t).max(whole.0), s.max(t).min(whole.1));
+        (from <= to).then_some((from, to))
+    };
+    let outer = usize::from(speed[1].abs() > speed[0].abs());
+    let inner = 1 - outer;
+    for i in ordered(range(outer, whole.0, whole.1), outer) {
+        cells = if field.is_wrapped() { cells.saturating_sub(1) } else { cells };
+        if cells == 0 {
             break;
         }
-        let at = |t: f64| Aabb::new(start.min + path * t, start.max + path * t);
-        field.triangles_in(&at(here).union(&at(there)), 2000, |corners| {
-            let [p, q, r] = corners;
-            let around = Aabb::new(p.min(q).min(r), p.max(q).max(r));
-            let limit = best.map_or(1.0, |b| b.fraction);
-            if within(&start, path, &around).is_some_and(|t| t.0 <= limit) {
-                let hit = bodies(body, path, &Body::triangle(corners));
-                if hit.is_some_and(|h| h.before(best)) {
-                    best = hit;
+        let Some((from, to)) = during(outer, i) else { continue };
+        if best.is_some_and(|b| b.fraction < from - 1e-9) {
+            break;
+        }
+        for j in ordered(range(inner, from, to), inner) {
+            if field.is_wrapped() {
+                if cells == 0 {
+                    break;
                 }
+                cells -= 1;
             }
-        });
+            let (x, z) = if outer == 0 { (i, j) } else { (j, i) };
+            for corners in field.cell_triangles(x, z) {
+                best = triangle_hit(body, &start, path, corners, best);
+            }
+        }
     }
     best
+}
+
+/// The hit with a triangle, if it is before `best`, else that.
+fn triangle_hit(
+    body: &Body<'_>,
+    start: &Aabb,
+    path: Vec3,
+    corners: [Vec3; 3],
+    best: Option<CastHit>,
+) -> Option<CastHit> {
+    let [p, q, r] = corners;
+    let limit = best.map_or(1.0, |b| b.fraction);
+    let around = Aabb::new(p.min(q).min(r), p.max(q).max(r));
+    let Some((from, to)) = within(start, path, &around) else { return best };
+    // The same across the triangle's plane.
+    let n = (q - p).cross(r - p);
+    let far = n.length() * body.margin;
+    let (low, high) = (n.dot(body.support(-n)) - far, n.dot(body.support(n)) + far);
+    let (mut times, slack) = ((from, to), 1e-9 * (low.abs() + high.abs() + n.dot(p).abs()));
+    let level = n.dot(p);
+    if !overlap(&mut times, level - high - slack, level - low + slack, n.dot(path)) || times.0 > limit {
+        return best;
+    }
+    match bodies(body, path, &Body::triangle(corners)) {
+        Some(hit) if hit.before(best) => Some(hit),
+        _ => best,
+    }
+}
+
+/// Cuts a time down to that in which something that moves at `speed` is between `low` and `high`; false if there is none.
+fn overlap(times: &mut (f64, f64), low: f64, high: f64, speed: f64) -> bool {
+    if speed == 0.0 {
+        return !(low > 0.0 || high < 0.0);
+    }
+    let (s, t) = (low / speed, high / speed);
+    *times = (times.0.max(s.min(t) - 1e-9), times.1.min(s.max(t) + 1e-9));
+    // Not numbers: nothing is known.
+    !(times.0 > times.1)
 }
 
 /// The part of a path, 0 to 1, on which a box that moves along it shares points with another; a hair more, against
 /// rounding.
 fn within(moving: &Aabb, path: Vec3, fixed: &Aabb) -> Option<(f64, f64)> {
-    let (mut from, mut to) = (0.0f64, 1.0f64);
-    for i in 0..3 {
-        let (low, high) = (fixed.min[i] - moving.max[i], fixed.max[i] - moving.min[i]);
-        if path[i] == 0.0 {
-            if low > 0.0 || high < 0.0 {
-                return None;
-            }
-            continue;
-        }
-        let (s, t) = (low / path[i], high / path[i]);
-        from = from.max(s.min(t) - 1e-9);
-        to = to.min(s.max(t) + 1e-9);
-    }
-    (from <= to).then_some((from, to))
+    let mut times = (0.0f64, 1.0f64);
+    let all = (0..3).all(|i| {
+        overlap(&mut times, fixed.min[i] - moving.max[i], fixed.max[i] - moving.min[i], path[i])
+    });
+    (all && times.0 <= times.1).then_some(times)
 }
 
 impl CastHit {
@@ -109,20 +193,19 @@ pub fn shape_cast(a: (&Shape, &Frame), path: Vec3, b: (&Shape, &Frame)) -> Optio
         (Shape::Plane(_) | Shape::Heightfield(_), _) => turned(),
         (Shape::TriMesh(mesh), Shape::Heightfield(field)) => {
             let path = fb.vector_to_local(path);
+            let count = mesh.triangles().len();
+            let cells = (MOST_CELLS / count).max(4096);
             let mut best: Option<CastHit> = None;
-            for i in 0..mesh.triangles().len() as u32 {
+            for i in 0..count as u32 {
                 let corners = mesh.corners(i).map(|p| fb.point_to_local(fa.point_to_world(p)));
-                let hit = body_field(&Body::triangle(corners), path, field);
-                if hit.is_some_and(|h| h.before(best)) {
-                    best = hit;
-                }
+                best = body_field(&Body::triangle(corners), path, field, cells, best);
             }
             best.map(|hit| hit.placed(fb))
         }
         (_, Shape::Heightfield(field)) => {
             let local = Frame::new(fb.point_to_local(fa.position), fb.rotation.transpose() * fa.rotation);
             let body = Body::of(sa, &local, Vec3::ZERO)?;
-            body_field(&body, fb.vector_to_local(path), field).map(|hit| hit.placed(fb))
+            body_field(&body, fb.vector_to_local(path), field, MOST_CELLS, None).map(|hit| hit.placed(fb))
         }
         (Shape::TriMesh(mesh), Shape::Plane(plane)) => mesh_plane(mesh, fa, path, plane),
         (_, Shape::Plane(plane)) => {

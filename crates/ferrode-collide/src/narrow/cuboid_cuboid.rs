@@ -113,7 +113,8 @@ impl<'a> Pair<'a> {
                     return None;
                 }
                 let length = axis.length();
-                if length > 0.0 {
+                // Of shorter ones, squares have lost digits.
+                if length > 1e-145 {
                     let s = s / length;
                     if s * EDGE_FACTOR > best {
                         best = s;

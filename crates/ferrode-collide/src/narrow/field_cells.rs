@@ -4,7 +4,7 @@ use crate::Heightfield;
 use ferrode_math::{Aabb, Vec3};
 
 /// Cells further than this from the middle are not told apart.
-const FAR: f64 = 1e15;
+pub(super) const FAR: f64 = 1e15;
 
 impl Heightfield {
     /// Calls `found` with each triangle of the surface, in the field's coordinates, whose box touches `aabb`. Of a field
@@ -31,8 +31,7 @@ impl Heightfield {
         let (z0, z1) = range(aabb.min.z, aabb.max.z, self.depth(), sz, self.rows());
         for x in x0..=x1 {
             for z in z0..=z1 {
-                let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.vertex(x + i, z + j));
-                for t in [[a, b, c], [d, c, b]] {
+                for t in self.cell_triangles(x, z) {
                     let (min, max) = (t[0].min(t[1]).min(t[2]), t[0].max(t[1]).max(t[2]));
                     if aabb.overlaps(&Aabb::new(min, max)) {
                         found(t);
@@ -40,6 +39,13 @@ impl Heightfield {
                 }
             }
         }
+    }
+
+    /// The two triangles of a cell, in the field's coordinates.
+    #[inline]
+    pub(crate) fn cell_triangles(&self, x: i64, z: i64) -> [[Vec3; 3]; 2] {
+        let [a, b, c, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| self.vertex(x + i, z + j));
+        [[a, b, c], [d, c, b]]
     }
 
     /// Height of the surface above a place, all in the field's coordinates; `None` beside the field.

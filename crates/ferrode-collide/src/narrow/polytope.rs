@@ -124,7 +124,8 @@ impl Polytope {
         let (e, f) = (q - p, r - p);
         let cross = e.cross(f);
         let area2 = cross.length_squared();
-        let flat = !(area2 > 1e-28 * (e.length_squared() * f.length_squared()).max(f64::MIN_POSITIVE));
+        // Below the second bound squares have lost digits.
+        let flat = !(area2 > (1e-28 * e.length_squared() * f.length_squared()).max(1e-290));
         let normal = if flat { Vec3::ZERO } else { cross * (1.0 / area2.sqrt()) };
         let distance = if flat { f64::INFINITY } else { normal.dot(p) };
         self.distances[i] = distance;

@@ -28,8 +28,25 @@ pub fn spheres(c1: Vec3, r1: f64, c2: Vec3, r2: f64, out: &mut Contacts<'_>) -> 
         out.push(c1, Vec3::X, depth);
         return true;
     }
-    // Subnormal lengths have no reciprocal.
-    let n = if d > 1e-300 { line * (1.0 / d) } else { line.normalized_or(Vec3::X) };
+    // Of lengths whose square is subnormal, the root has lost digits.
+    let n = if d > 1e-145 { line * (1.0 / d) } else { line.normalized_or(Vec3::X) };
     out.push(c1 + n * (0.5 * (r2 - r1 - d)), n, depth);
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CollideOptions;
+
+    #[test]
+    fn centres_that_almost_coincide_have_a_unit_normal() {
+        for d in [1e-140, 1e-150, 1e-155, 1e-160, 1e-161, 1e-170, 1e-300, 1e-320] {
+            let mut list = Vec::new();
+            let mut out = Contacts::new(&mut list, CollideOptions::default());
+            assert!(spheres(Vec3::new(0.0, d, 0.0), 1.0, Vec3::ZERO, 1.0, &mut out));
+            let n = list[0].point.normal;
+            assert!((n.length() - 1.0).abs() < 1e-15, "{d}: {n:?}");
+        }
+    }
 }

@@ -11,7 +11,12 @@ pub struct Plane {
 impl Plane {
     /// The plane a x + b y + c z = d in world coordinates, with normal (a, b, c) of any length but zero.
     pub fn new(normal: Vec3, d: f64) -> Result<Self, ShapeError> {
-        let length = normal.length();
+        let mut length = normal.length();
+        // The square of a very small number has lost digits, or all: along the unit vector nothing is squared.
+        let tiny = if length < 1e-145 { normal.normalized() } else { None };
+        if let Some(n) = tiny {
+            length = n.dot(normal);
+        }
         if !(length > 0.0 && length.is_finite()) {
             return Err(ShapeError { what: "length of a plane's normal", value: length });
         }
@@ -19,8 +24,11 @@ impl Plane {
             return Err(ShapeError { what: "plane distance", value: d });
         }
         let scale = 1.0 / length;
-        let (n, d) =
-            if scale.is_finite() { (normal * scale, d * scale) } else { (normal / length, d / length) };
+        let (n, d) = match tiny {
+            Some(n) => (n, d / length),
+            None if scale.is_finite() => (normal * scale, d * scale),
+            None => (normal / length, d / length),
+        };
         if !d.is_finite() {
             return Err(ShapeError { what: "plane distance over the length of its normal", value: d });
         }
@@ -64,5 +72,21 @@ impl Plane {
             }
         }
         aabb
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_whose_squares_underflow_become_unit_vectors() {
+        for size in [1e-140, 1e-149, 1e-155, 1e-160, 1e-161, 1e-200, 1e-300, 1e-320] {
+            let plane = Plane::new(Vec3::new(0.6 * size, 0.0, 0.8 * size), 2.0 * size).unwrap();
+            assert!((plane.normal().length() - 1.0).abs() < 1e-15, "{size}: {plane:?}");
+            let off = (plane.normal() - Vec3::new(0.6, 0.0, 0.8)).length().max((plane.d() - 2.0).abs());
+            assert!(off < if size > 1e-308 { 1e-15 } else { 1e-3 }, "{size}: {plane:?}");
+        }
+        assert!(Plane::new(Vec3::ZERO, 0.0).is_err());
     }
 }
