@@ -377,7 +377,10 @@ fn own_shapes_collide_in_spaces() {
         let mut found = Vec::new();
         queries.geoms_at(Vec3::new(0.0, 0.0, 0.25), |key, depth| found.push((key, depth)));
         assert_eq!(found, [(slab, 0.25)]);
+        // A ball's distance follows from the depth of its centre.
+        let d = colliders.distance(ball, slab).unwrap();
+        assert!((d.distance + 0.25).abs() < 1e-12 && (d.normal - Vec3::Z).length() < 1e-9, "{d:?}");
         // What it says nothing about it does not have.
-        assert_eq!(colliders.distance(slab, ball), None);
+        assert_eq!(colliders.distance(slab, cube), None);
     }
 }

@@ -228,7 +228,9 @@ mod tests {
 
     #[test]
     fn normalized_survives_extreme_lengths() {
-        for scale in [1e-320, 1e-300, 1e-170, 1e-161, 1e-160, 1e-155, 1e-149, 1e-140, 1.0, 1e150, 1e200, 1e300] {
+        for scale in
+            [1e-320, 1e-300, 1e-170, 1e-161, 1e-160, 1e-155, 1e-149, 1e-140, 1.0, 1e150, 1e200, 1e300]
+        {
             let q = Quat::new(0.0, 3.0 * scale, 0.0, 4.0 * scale).normalized().unwrap();
             assert!((q.dot(q) - 1.0).abs() < 1e-15, "scale {scale}: {q:?}");
             assert!((q.x - 0.6).abs() < 1e-3 && (q.z - 0.8).abs() < 1e-3, "scale {scale}: {q:?}");

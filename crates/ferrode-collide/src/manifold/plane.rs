@@ -67,7 +67,7 @@ pub(super) fn body_plane(
                 patch.push(Spot { a: lowest, b: lowest + n * depth, depth, feature: 1 << 16 });
             }
         }
-        Core::Point | Core::Ellipsoid(_) | Core::Triangle(_) => push(lowest, 0),
+        Core::Point | Core::Ellipsoid(_) | Core::Triangle(_) | Core::Custom(_) => push(lowest, 0),
     }
     if patch.spots().is_empty() {
         patch.push(Spot { a: lowest, b: lowest + n * depth, depth, feature: 1 << 17 });

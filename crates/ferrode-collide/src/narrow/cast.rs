@@ -1,5 +1,6 @@
 //! Where a moving shape first touches another.
 
+use super::custom::{is_marched, march};
 use super::distance::{body_distance, plane_distance};
 use super::field_cells::FAR;
 use super::support::{Body, difference};
@@ -23,8 +24,8 @@ pub struct CastHit {
 
 /// Of a field without end: cells along either axis below the body that a cast looks at, those below its middle, and how
 /// many cells in all.
-const MOST_ACROSS: f64 = 128.0;
-const MOST_CELLS: usize = 1 << 18;
+const MOST_ACROSS: f64 = 32.0;
+const MOST_CELLS: usize = 1 << 16;
 
 /// The first hit with a triangle of a field, in whose coordinates the body is; before `best`, if there is one. Of a field
 /// without end it looks at no more than `cells`.
@@ -131,6 +132,20 @@ fn triangle_hit(
     if !overlap(&mut times, level - high - slack, level - low + slack, n.dot(path)) || times.0 > limit {
         return best;
     }
+    // Touching at the start, only the deepest counts: if some way out is no longer than that of the best, it is not this one.
+    if let Some(b) = best
+        && b.fraction == 0.0
+    {
+        let out = (start.max - around.min).min(around.max - start.min);
+        let top = b.normal.dot(p).max(b.normal.dot(q)).max(b.normal.dot(r));
+        let over = top - b.normal.dot(body.support(-b.normal)) + body.margin;
+        if (level - low).min(high - level) <= b.depth * n.length()
+            || out.x.min(out.y).min(out.z) <= b.depth
+            || over <= b.depth
+        {
+            return best;
+        }
+    }
     match bodies(body, path, &Body::triangle(corners)) {
         Some(hit) if hit.before(best) => Some(hit),
         _ => best,
@@ -152,9 +167,8 @@ fn overlap(times: &mut (f64, f64), low: f64, high: f64, speed: f64) -> bool {
 /// rounding.
 fn within(moving: &Aabb, path: Vec3, fixed: &Aabb) -> Option<(f64, f64)> {
     let mut times = (0.0f64, 1.0f64);
-    let all = (0..3).all(|i| {
-        overlap(&mut times, fixed.min[i] - moving.max[i], fixed.max[i] - moving.min[i], path[i])
-    });
+    let all = (0..3)
+        .all(|i| overlap(&mut times, fixed.min[i] - moving.max[i], fixed.max[i] - moving.min[i], path[i]));
     (all && times.0 <= times.1).then_some(times)
 }
 
@@ -174,8 +188,12 @@ impl CastHit {
 }
 
 /// Where shape `a`, moving along `path` without turning, first touches `b`, to a few millionths of their sizes.
-/// `None` if it does not, for rays, for two planes, for a heightfield with a plane or another heightfield, and for a path
-/// that is not finite. Meshes and heightfields are their surfaces.
+/// `None` if it does not, for rays, for two planes, and for a path that is not finite. Meshes and heightfields are their
+/// surfaces. Of a heightfield without end it looks at what lies below the middle 32 cells of the other shape, along a path of
+/// some thousands of cells; with a plane or another such field there is no answer.
+///
+/// A shape of one's own takes part if it has a [support function](crate::CustomShape::support) or knows its
+/// [distance](crate::CustomShape::distance) from the other shape.
 pub fn shape_cast(a: (&Shape, &Frame), path: Vec3, b: (&Shape, &Frame)) -> Option<CastHit> {
     if !path.is_finite() {
         return None;
@@ -188,8 +206,21 @@ pub fn shape_cast(a: (&Shape, &Frame), path: Vec3, b: (&Shape, &Frame)) -> Optio
     };
     match (sa, sb) {
         (Shape::Plane(_), Shape::Plane(_)) => None,
-        (Shape::Heightfield(_), Shape::Plane(_) | Shape::Heightfield(_)) => None,
-        (Shape::Plane(_), Shape::Heightfield(_)) => None,
+        _ if is_marched(sa, sb) => march(a, path, b),
+        (Shape::Heightfield(_), Shape::Plane(_)) => {
+            let d = super::distance_frames(a, b)?;
+            linear(d.distance, d.b, d.normal, path)
+        }
+        (Shape::Heightfield(field), Shape::Heightfield(other)) if !field.is_wrapped() => {
+            let path = fb.vector_to_local(path);
+            let mut best: Option<CastHit> = None;
+            field.each_triangle(|corners| {
+                let corners = corners.map(|p| fb.point_to_local(fa.point_to_world(p)));
+                best = body_field(&Body::triangle(corners), path, other, 4096, best);
+            });
+            best.map(|hit| hit.placed(fb))
+        }
+        (Shape::Heightfield(_), Shape::Heightfield(other)) if other.is_wrapped() => None,
         (Shape::Plane(_) | Shape::Heightfield(_), _) => turned(),
         (Shape::TriMesh(mesh), Shape::Heightfield(field)) => {
             let path = fb.vector_to_local(path);
@@ -237,7 +268,7 @@ pub fn shape_cast(a: (&Shape, &Frame), path: Vec3, b: (&Shape, &Frame)) -> Optio
 }
 
 /// The hit of what is `distance` away along `normal`, if that does not change on the way.
-fn linear(distance: f64, position: Vec3, normal: Vec3, path: Vec3) -> Option<CastHit> {
+pub(super) fn linear(distance: f64, position: Vec3, normal: Vec3, path: Vec3) -> Option<CastHit> {
     if distance <= 0.0 {
         return Some(CastHit { fraction: 0.0, position, normal, depth: 0.0 - distance });
     }

@@ -1,6 +1,7 @@
 //! How far two shapes are apart.
 
 use super::convex::touch;
+use super::custom::own_distance;
 use super::gjk::{Gap, gjk};
 use super::support::Body;
 use super::triangle::bounds;
@@ -22,7 +23,11 @@ pub struct Distance {
 }
 
 /// The distance of two shapes; meshes and heightfields are their surfaces. `None` for pairs that have none: rays, two
-/// planes, and a heightfield with a plane or another heightfield.
+/// planes, two heightfields without end, and such a one with a plane that is not level with it.
+///
+/// A shape of one's own is asked for its [distance](crate::CustomShape::distance); if it does not tell, for its
+/// [support function](crate::CustomShape::support), and from a ball for the
+/// [depth](crate::CustomShape::point_depth) of its centre.
 pub fn distance(a: (&Shape, &Pose), b: (&Shape, &Pose)) -> Option<Distance> {
     distance_frames((a.0, &Frame::from(a.1)), (b.0, &Frame::from(b.1)))
 }
@@ -30,10 +35,46 @@ pub fn distance(a: (&Shape, &Pose), b: (&Shape, &Pose)) -> Option<Distance> {
 /// As [`distance`], for callers who have the rotation matrices at hand.
 pub fn distance_frames(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> Option<Distance> {
     let ((sa, fa), (sb, fb)) = (a, b);
+    if matches!(sa, Shape::Custom(_)) || matches!(sb, Shape::Custom(_)) {
+        let told = own_distance(a, b);
+        if told.is_some() {
+            return told;
+        }
+    }
     match (sa, sb) {
         (Shape::Plane(_), Shape::Plane(_)) => None,
-        (Shape::TriMesh(mesh), Shape::Plane(p)) => mesh_plane_distance(mesh, fa, p),
-        (Shape::Heightfield(_), Shape::Plane(_) | Shape::Heightfield(_)) => None,
+        (Shape::TriMesh(mesh), Shape::Plane(p)) => vertices_plane_distance(mesh.vertices(), fa, p),
+        (Shape::Heightfield(field), Shape::Plane(p)) => {
+            let n = fa.vector_to_local(p.normal());
+            // What has no end goes through planes that lean.
+            if field.is_wrapped() && (n.x != 0.0 || n.z != 0.0) {
+                return None;
+            }
+            let (columns, rows) = (field.columns() as i64, field.rows() as i64);
+            let corners = (0..rows).flat_map(|z| (0..columns).map(move |x| (x, z)));
+            let lowest =
+                corners.map(|(x, z)| field.vertex(x, z)).min_by(|p, q| p.dot(n).total_cmp(&q.dot(n)))?;
+            vertices_plane_distance(&[lowest], fa, p)
+        }
+        (Shape::Heightfield(field), Shape::Heightfield(other)) if !field.is_wrapped() => {
+            let mut best: Option<Distance> = None;
+            let whole = other.aabb(&Frame::IDENTITY);
+            field.each_triangle(|corners| {
+                let body = Body::triangle(corners.map(|p| fb.point_to_local(fa.point_to_world(p))));
+                let around = bounds(&body);
+                let gap = (whole.min - around.max).max(around.min - whole.max).max(Vec3::ZERO).length();
+                if best.is_some_and(|b| gap > b.distance.max(0.0)) {
+                    return;
+                }
+                if let Some(d) = body_field_distance(&body, other)
+                    && best.is_none_or(|b| d.distance < b.distance)
+                {
+                    best = Some(d);
+                }
+            });
+            best.map(|d| d.placed(fb))
+        }
+        (Shape::Heightfield(_), Shape::Heightfield(other)) if other.is_wrapped() => None,
         (Shape::Heightfield(_), _) => distance_frames(b, a).map(Distance::swapped),
         (Shape::TriMesh(mesh), Shape::Heightfield(field)) => {
             let mut best: Option<Distance> = None;
@@ -46,12 +87,11 @@ pub fn distance_frames(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> Option<Dista
             }
             best.map(|d| d.placed(fb))
         }
-        (Shape::Plane(_), Shape::Heightfield(_)) => None,
+        (Shape::Plane(_), _) => distance_frames(b, a).map(Distance::swapped),
         (_, Shape::Heightfield(field)) => {
             let local = Frame::new(fb.point_to_local(fa.position), fb.rotation.transpose() * fa.rotation);
             body_field_distance(&Body::of(sa, &local, Vec3::ZERO)?, field).map(|d| d.placed(fb))
         }
-        (Shape::Plane(_), _) => distance_frames(b, a).map(Distance::swapped),
         (_, Shape::Plane(p)) => Some(plane_distance(p, &Body::of(sa, fa, Vec3::ZERO)?)),
         (Shape::TriMesh(mesh), Shape::TriMesh(other)) => {
             let mut best: Option<Distance> = None;
@@ -131,9 +171,9 @@ impl Distance {
 }
 
 /// The lowest vertex.
-fn mesh_plane_distance(mesh: &TriMesh, frame: &Frame, plane: &Plane) -> Option<Distance> {
+fn vertices_plane_distance(vertices: &[Vec3], frame: &Frame, plane: &Plane) -> Option<Distance> {
     let n = frame.vector_to_local(plane.normal());
-    let lowest = mesh.vertices().iter().min_by(|p, q| p.dot(n).total_cmp(&q.dot(n)))?;
+    let lowest = vertices.iter().min_by(|p, q| p.dot(n).total_cmp(&q.dot(n)))?;
     let a = frame.point_to_world(*lowest);
     let depth = plane.depth(a);
     Some(Distance { distance: -depth, a, b: a + plane.normal() * depth, normal: plane.normal() })

@@ -41,6 +41,15 @@ impl Heightfield {
         }
     }
 
+    /// Calls `found` with each triangle, in the field's coordinates; of a field without end, with those of one repetition.
+    pub(crate) fn each_triangle(&self, mut found: impl FnMut([Vec3; 3])) {
+        for z in 0..self.rows() as i64 - 1 {
+            for x in 0..self.columns() as i64 - 1 {
+                self.cell_triangles(x, z).into_iter().for_each(&mut found);
+            }
+        }
+    }
+
     /// The two triangles of a cell, in the field's coordinates.
     #[inline]
     pub(crate) fn cell_triangles(&self, x: i64, z: i64) -> [[Vec3; 3]; 2] {

@@ -80,7 +80,7 @@ impl Feature {
                 }
                 f
             }
-            Core::Ellipsoid(_) => Self::corner(body.support(d)),
+            Core::Ellipsoid(_) | Core::Custom(_) => Self::corner(body.support(d)),
             Core::Cone(radius, half) => {
                 let along = d.dot(u);
                 let radial = d - u * along;

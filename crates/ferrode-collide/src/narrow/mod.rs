@@ -22,6 +22,7 @@ mod convex_plane;
 mod cuboid_cuboid;
 mod cuboid_plane;
 mod cuboid_trimesh;
+mod custom;
 mod cylinder_cuboid;
 mod cylinder_cylinder;
 mod cylinder_plane;

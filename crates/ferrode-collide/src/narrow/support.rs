@@ -1,6 +1,6 @@
 //! Convex bodies by their support functions, for the algorithms that need no more.
 
-use crate::{Capsule, Convex, Cuboid, Cylinder, Ellipsoid, Frame, Shape, Sphere};
+use crate::{Capsule, Convex, Cuboid, CustomShape, Cylinder, Ellipsoid, Frame, Shape, Sphere};
 use ferrode_math::{Mat3, Vec3};
 
 /// The part of a convex body that is left when a margin of constant width is taken off, in its own coordinates.
@@ -18,6 +18,8 @@ pub(crate) enum Core<'a> {
     /// Radius of the base at −half on the z axis, and half length.
     Cone(f64, f64),
     Hull(&'a Convex),
+    /// One's own, convex.
+    Custom(&'a dyn CustomShape),
     /// Corners relative to the body's centre, in the pair's coordinates.
     Triangle([Vec3; 3]),
 }
@@ -34,7 +36,7 @@ pub(crate) struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// The body of a convex shape of finite size.
+    /// The body of a convex shape of finite size; of one's own if it has a support function.
     pub fn of(shape: &'a Shape, frame: &Frame, origin: Vec3) -> Option<Self> {
         Some(match shape {
             Shape::Sphere(s) => Self::sphere(s, frame, origin),
@@ -46,11 +48,17 @@ impl<'a> Body<'a> {
                 Self::new(Core::Cone(s.radius(), 0.5 * s.length()), 0.0, s.reach(), frame, origin)
             }
             Shape::Convex(s) => Self::new(Core::Hull(s), 0.0, s.reach(), frame, origin),
-            Shape::Plane(_)
-            | Shape::Ray(_)
-            | Shape::TriMesh(_)
-            | Shape::Heightfield(_)
-            | Shape::Custom(_) => return None,
+            Shape::Custom(s) => {
+                let (own, mut most) = (s.get(), Vec3::ZERO);
+                for (i, d) in [Vec3::X, Vec3::Y, Vec3::Z].into_iter().enumerate() {
+                    most[i] = own.support(d)?[i].abs().max(own.support(-d)?[i].abs());
+                }
+                if !most.is_finite() {
+                    return None;
+                }
+                Self::new(Core::Custom(own), 0.0, most.length(), frame, origin)
+            }
+            Shape::Plane(_) | Shape::Ray(_) | Shape::TriMesh(_) | Shape::Heightfield(_) => return None,
         })
     }
 
@@ -107,6 +115,8 @@ impl<'a> Body<'a> {
                 }
             }
             Core::Hull(hull) => hull.support(l),
+            // Where it has no answer it is taken to be its origin.
+            Core::Custom(own) => own.support(l).unwrap_or(Vec3::ZERO),
             Core::Triangle(corners) => {
                 let [a, b, c] = corners.map(|p| p.dot(d));
                 let i = if a >= b && a >= c {
@@ -130,13 +140,14 @@ impl<'a> Body<'a> {
 
     /// Whether its core is curved.
     pub fn is_round(&self) -> bool {
-        matches!(self.core, Core::Cylinder(..) | Core::Cone(..) | Core::Ellipsoid(_))
+        matches!(self.core, Core::Cylinder(..) | Core::Cone(..) | Core::Ellipsoid(_) | Core::Custom(_))
     }
 
     /// A point within the body.
     pub fn middle(&self) -> Vec3 {
         match self.core {
             Core::Hull(hull) => self.place(hull.middle()),
+            Core::Custom(_) => (self.support(Vec3::X) + self.support(-Vec3::X)) * 0.5,
             _ => self.center,
         }
     }

@@ -17,7 +17,9 @@ pub struct ClosestPoint {
     pub normal: Vec3,
 }
 
-/// The point of a shape's surface nearest to `point`. `None` for rays.
+/// The point of a shape's surface nearest to `point`. `None` for rays, and for shapes of one's own that neither have a
+/// [support function](crate::CustomShape::support) nor tell [distances](crate::CustomShape::distance) or
+/// [depths](crate::CustomShape::point_depth).
 pub fn closest_point(shape: &Shape, frame: &Frame, point: Vec3) -> Option<ClosestPoint> {
     let speck = Shape::from(Sphere::new(0.0).ok()?);
     let at = Frame::new(point, Mat3::IDENTITY);
@@ -29,7 +31,8 @@ pub fn closest_point(shape: &Shape, frame: &Frame, point: Vec3) -> Option<Closes
         Shape::TriMesh(mesh) => is_within(mesh, frame, point),
         Shape::Heightfield(field) => {
             let p = frame.point_to_local(point);
-            field.surface_at(p.x, p.z).is_some_and(|y| p.y < y)
+            let bottom = field.aabb(&Frame::IDENTITY).min.y;
+            field.surface_at(p.x, p.z).is_some_and(|y| p.y < y && p.y >= bottom)
         }
         _ => false,
     };
@@ -96,7 +99,8 @@ impl Colliders {
 }
 
 /// Depth of a point within a shape: the least distance to its surface; outside, minus the distance. A mesh counts as
-/// closed. `None` for rays and heightfields, which have no inside; see [`closest_point`] for the latter.
+/// closed; what is straight below a heightfield is within it, down to the bottom of its box (its thickness below the lowest
+/// sample), which is no surface. `None` for rays, and for shapes of one's own that cannot tell.
 pub fn point_depth(shape: &Shape, frame: &Frame, point: Vec3) -> Option<f64> {
     let local = frame.point_to_local(point);
     Some(match shape {
@@ -128,8 +132,11 @@ pub fn point_depth(shape: &Shape, frame: &Frame, point: Vec3) -> Option<f64> {
             let depth = planes.fold(f64::INFINITY, f64::min);
             if depth >= 0.0 { depth } else { -closest_point(shape, frame, point)?.distance }
         }
-        Shape::Ray(_) | Shape::Heightfield(_) => return None,
-        Shape::Custom(s) => s.get().point_depth(frame, point)?,
+        Shape::Ray(_) => return None,
+        Shape::Custom(s) => match s.get().point_depth(frame, point) {
+            Some(depth) => depth,
+            None => -closest_point(shape, frame, point)?.distance,
+        },
         _ => -closest_point(shape, frame, point)?.distance,
     })
 }

@@ -1,3 +1,4 @@
+use crate::narrow::Distance;
 use crate::{Contacts, Frame, Shape};
 use core::fmt;
 use ferrode_math::{Aabb, Vec3};
@@ -55,7 +56,23 @@ pub trait CustomShape: fmt::Debug + Send + Sync {
     /// the depth of a hit is the distance along the ray.
     fn collide(&self, frame: &Frame, other: &Shape, other_frame: &Frame, out: &mut Contacts<'_>) -> bool;
 
-    /// Depth of a point; negative outside. `None` if the shape cannot tell.
+    /// The point furthest along `direction`, of any length but zero, both in the shape's own coordinates. For convex shapes of
+    /// finite size: distances, nearest points and casts are then found as for any other convex body. `None`, for every
+    /// direction, if the shape is not convex.
+    fn support(&self, _direction: Vec3) -> Option<Vec3> {
+        None
+    }
+
+    /// The distance of this shape, the first, from another: for shapes that are not convex, or that know better. Casts of such
+    /// shapes, and onto them, go as far as nothing is nearer and look again, so it must never be too long.
+    ///
+    /// `None` if it knows nothing of such shapes: then a convex shape is asked for its [support](Self::support), and the
+    /// distance of a ball follows from the [depth of its centre](Self::point_depth).
+    fn distance(&self, _frame: &Frame, _other: &Shape, _other_frame: &Frame) -> Option<Distance> {
+        None
+    }
+
+    /// Depth of a point in metres: the distance to the surface, negative outside. `None` if the shape cannot tell.
     fn point_depth(&self, _frame: &Frame, _point: Vec3) -> Option<f64> {
         None
     }

@@ -68,11 +68,11 @@ impl QuadtreeSpace {
             first: NONE,
             count: 0,
         };
-        let bounds = |c: [f64; 2], h: [f64; 2]| {
-            ([c[0] - h[0], c[1] - h[1]], [(c[0] + h[0]).next_up(), (c[1] + h[1]).next_up()])
-        };
+        let bounds = |c: [f64; 2], h: [f64; 2]| ([c[0] - h[0], c[1] - h[1]], [c[0] + h[0], c[1] + h[1]]);
         let (min, max) = bounds(center, half_sides);
-        let mut blocks = vec![block(min, max, NONE)];
+        // The upper bounds of the largest belong to it. Those of the others don't: a box that ends there touches what begins in
+        // the next block, and must not be hidden from it.
+        let mut blocks = vec![block(min, max.map(f64::next_up), NONE)];
         let mut level = vec![(0u32, center)];
         let mut half = half_sides;
         for _ in 0..depth.min(Self::MAX_DEPTH) {
@@ -258,5 +258,30 @@ impl BroadPhase for QuadtreeSpace {
 
     fn members(&self) -> &Members {
         &self.members
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ferrode_math::Vec3;
+
+    #[test]
+    fn boxes_that_touch_where_blocks_meet_are_a_pair() {
+        for (x, y) in [(0.0, 5.3), (1.0, 5.3), (-3.0, 0.2), (5.3, 0.0), (4.0, 4.0), (16.0, 1.0), (0.1, 0.3)] {
+            let (mut space, mut table) = (QuadtreeSpace::new([0.0; 2], [16.0; 2], 4), ProxyTable::new());
+            // To either side of the place, along x and along y.
+            for (i, (dx, dy)) in [(-1.0, -1.0), (0.0, -1.0), (-1.0, 0.0), (0.0, 0.0)].into_iter().enumerate()
+            {
+                let min = Vec3::new(x + 0.25 * dx, y + 0.25 * dy, 0.0);
+                let max = Vec3::new(x + 0.25 * (dx + 1.0), y + 0.25 * (dy + 1.0), 1.0);
+                table.set(ProxyId(i as u32), Proxy::new(Aabb::new(min, max)));
+                space.insert(&mut table, ProxyId(i as u32));
+            }
+            space.update(&table);
+            let mut count = 0;
+            space.collide(&table, &mut Scratch::default(), &mut |_, _| count += 1);
+            assert_eq!(count, 6, "at {x} {y}");
+        }
     }
 }
