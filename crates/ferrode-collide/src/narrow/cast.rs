@@ -146,7 +146,7 @@ fn triangle_hit(
             return best;
         }
     }
-    match bodies(body, path, &Body::triangle(corners)) {
+    match bodies_until(body, path, &Body::triangle(corners), times.1.min(limit)) {
         Some(hit) if hit.before(best) => Some(hit),
         _ => best,
     }
@@ -329,6 +329,11 @@ const STEPS: usize = 100;
 /// before the gap has closed along its present normal, so go there and look again. Close by, the gap is flat: the last
 /// step is exact for flat faces, and for round ones to the square of what it covers.
 fn bodies(a: &Body<'_>, path: Vec3, b: &Body<'_>) -> Option<CastHit> {
+    bodies_until(a, path, b, 1.0)
+}
+
+/// As [`bodies`], if what they touch after that part of the path does not count.
+fn bodies_until(a: &Body<'_>, path: Vec3, b: &Body<'_>, until: f64) -> Option<CastHit> {
     let size = a.reach().min(b.reach());
     let close = (2e-5 * size).max(1e-11 * (a.reach() + b.reach()));
     let mut moving = *a;
@@ -360,7 +365,7 @@ fn bodies(a: &Body<'_>, path: Vec3, b: &Body<'_>) -> Option<CastHit> {
             return None;
         }
         fraction += d.distance / approach;
-        if !(fraction <= 1.0) {
+        if !(fraction <= until) {
             return None;
         }
     }
