@@ -18,9 +18,16 @@ static inline void show(const char *name, const dReal *x, int n) {
 static inline void show1(const char *name, dReal x) { show(name, &x, 1); }
 static inline void showi(const char *name, long x) { printf("%s %ld\n", name, x); }
 
-#define V3(call, ...) do { dVector3 v_ = {0, 0, 0, 0}; call(__VA_ARGS__, v_); show(#call, v_, 3); } while (0)
-#define R1(call, ...) show1(#call, call(__VA_ARGS__))
-#define I1(call, ...) showi(#call, (long)call(__VA_ARGS__))
+#define V3(call, ...) do { dVector3 v_ = {0, 0, 0, 0}; call(__VA_ARGS__, v_); show(#call ":", v_, 3); } while (0)
+#define R1(call, ...) show1(#call ":", call(__VA_ARGS__))
+#define I1(call, ...) showi(#call ":", (long)call(__VA_ARGS__))
+
+/* A line that begins with the name of a function and a colon, and shows what the call led to: a program that prints it
+   has to print something else if that function does nothing. */
+#define CHECK(f, x, n) do { (void)&f; show(#f ":", x, n); } while (0)
+#define CHECK1(f, x) do { (void)&f; show1(#f ":", x); } while (0)
+#define CHECKI(f, x) do { (void)&f; showi(#f ":", (long)(x)); } while (0)
+#define MOVES(f, b) do { dReal m_[13]; motion(b, m_); CHECK(f, m_, 13); } while (0)
 
 static inline void show_body(const char *name, dBodyID b) {
     char text[64];
@@ -31,6 +38,14 @@ static inline void show_body(const char *name, dBodyID b) {
     snprintf(text, sizeof text, "%s.angular", name); show(text, dBodyGetAngularVel(b), 3);
     snprintf(text, sizeof text, "%s.force", name); show(text, dBodyGetForce(b), 3);
     snprintf(text, sizeof text, "%s.torque", name); show(text, dBodyGetTorque(b), 3);
+}
+
+/* Position, quaternion, linear and angular velocity. */
+static inline void motion(dBodyID b, dReal m[13]) {
+    memcpy(m, dBodyGetPosition(b), 3 * sizeof *m);
+    memcpy(m + 3, dBodyGetQuaternion(b), 4 * sizeof *m);
+    memcpy(m + 7, dBodyGetLinearVel(b), 3 * sizeof *m);
+    memcpy(m + 10, dBodyGetAngularVel(b), 3 * sizeof *m);
 }
 
 /* Two bodies in general position, with velocities. */
