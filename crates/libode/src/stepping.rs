@@ -281,14 +281,6 @@ export! {
         }
         limits.set([given])?
     }
-    /// Worlds don't share memory here: there is nothing to set up, and it always works.
-    fn dWorldUseSharedWorkingMemory(world: WorldId, from: WorldId) -> c_int {
-        world.get()?;
-        if !from.is_null() {
-            from.get()?;
-        }
-        1
-    }
     fn dWorldSetStepMemoryReservationPolicy(world: WorldId, policy: In<ReserveInfo>) -> c_int {
         let world = world.get()?;
         let policy = policy.optional().map(|[policy]| policy);
@@ -311,6 +303,15 @@ export! {
 
 export_calling! {
     fn dWorldCleanupWorkingMemory(world: WorldId) { world.get()?.settings.free_step_memory() }
+    /// A world's working memory stays its own; with another's it takes over that one's manager and reserve.
+    fn dWorldUseSharedWorkingMemory(world: WorldId, from: WorldId) -> c_int {
+        let world = world.get()?;
+        let from = if from.is_null() { None } else { Some(&from.get()?.settings) };
+        world.settings.free_step_memory();
+        world.settings.manager.set(from.and_then(|from| from.manager.get()));
+        world.settings.reserve.set(from.map(|from| from.reserve.get()).unwrap_or_default());
+        1
+    }
     fn dWorldSetStepMemoryManager(world: WorldId, functions: In<MemoryFunctions>) -> c_int {
         let world = world.get()?;
         let functions = functions.optional().map(|[functions]| functions);

@@ -108,9 +108,17 @@ export! {
         let lines: Vec<(CString, u64, f64)> = timer(|timer| {
             let runs = timer.totals.iter().map(|total| total.1 as f64 / total.0.max(1) as f64);
             let parts = timer.marks.windows(2).zip(runs.chain(core::iter::repeat(0.0)));
-            parts.map(|(pair, mean)| (pair[0].0.clone(), pair[1].1.wrapping_sub(pair[0].1), mean)).collect()
+            let mut lines: Vec<_> = parts
+                .map(|(pair, mean)| (pair[0].0.clone(), pair[1].1.wrapping_sub(pair[0].1), mean))
+                .collect();
+            // The last mark, "TOTAL" after dTimerEnd, has the whole.
+            if let Some((name, _)) = timer.marks.last() {
+                let whole = lines.iter().fold((0, 0.0), |sum, line| (sum.0 + line.1, sum.1 + line.2));
+                lines.push((name.clone(), whole.0, whole.1));
+            }
+            lines
         });
-        let total: u64 = lines.iter().map(|line| line.1).sum();
+        let total = lines.last().map_or(0, |line| line.1);
         let title = c"\nTimer Report (%g s resolution)\n------------\n";
         // SAFETY: the program's open file; the format takes one number.
         unsafe { fprintf(file, title.as_ptr(), 1.0 / TICKS) };

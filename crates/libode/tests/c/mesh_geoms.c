@@ -47,6 +47,7 @@ int main(void) {
     CHECKI(dGeomTriMeshEnableTC, dGeomTriMeshIsTCEnabled(g, dBoxClass) * 10 + dGeomTriMeshIsTCEnabled(g, dSphereClass));
     I1(dGeomTriMeshIsTCEnabled, g, dBoxClass);
     dGeomTriMeshClearTCCache(g);
+    CHECKI(dGeomTriMeshClearTCCache, dCollide(g, ball, 8, k, sizeof *k) > 0);
     dMatrix4 last;
     for (int i = 0; i < 16; i++) last[i] = 0.5f * i;
     dGeomTriMeshSetLastTransform(g, last);

@@ -25,6 +25,7 @@ int main(void) {
     I1(dAllocateODEDataForThread, dAllocateFlagCollisionData);
     CHECKI(dInitODE2, collides());
     dCleanupODEAllDataForThread();
+    CHECKI(dCleanupODEAllDataForThread, collides());
     dCloseODE();
     CHECKI(dCloseODE, collides());
     dInitODE();

