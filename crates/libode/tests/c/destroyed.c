@@ -11,7 +11,7 @@ static long in_use(void) {
         for (int i = 0; i < 40; i++) { __VA_ARGS__; } \
         long before = in_use(); \
         for (int i = 0; i < rounds; i++) { __VA_ARGS__; } \
-        CHECKI(f, in_use() - before < 8 * rounds); } while (0)
+        CHECKI(f, in_use() - before < 4 * rounds); } while (0)
 
 int main(void) {
     dInitODE2(0);
@@ -51,14 +51,14 @@ int main(void) {
     threads = dThreadingAllocateSelfThreadedImplementation();
     const dThreadingFunctionsInfo *functions = dThreadingImplementationGetFunctions(threads);
     dCooperativeID cooperative;
-    STAYS(dCooperativeDestroy, 400, cooperative = dCooperativeCreate(functions, threads); dCooperativeDestroy(cooperative));
+    STAYS(dCooperativeDestroy, 4000, cooperative = dCooperativeCreate(functions, threads); dCooperativeDestroy(cooperative));
     cooperative = dCooperativeCreate(functions, threads);
     dResourceRequirementsID need;
-    STAYS(dResourceRequirementsDestroy, 400, need = dResourceRequirementsCreate(cooperative); dResourceRequirementsDestroy(need));
+    STAYS(dResourceRequirementsDestroy, 4000, need = dResourceRequirementsCreate(cooperative); dResourceRequirementsDestroy(need));
     need = dResourceRequirementsCreate(cooperative);
     dEstimateCooperativelyFactorLDLTResourceRequirements(need, 1, 40);
     dResourceContainerID room;
-    STAYS(dResourceContainerDestroy, 400, room = dResourceContainerAcquire(need); dResourceContainerDestroy(room));
+    STAYS(dResourceContainerDestroy, 4000, room = dResourceContainerAcquire(need); dResourceContainerDestroy(room));
     dResourceRequirementsDestroy(need);
     dCooperativeDestroy(cooperative);
     dThreadingFreeImplementation(threads);
