@@ -3,7 +3,7 @@
 use super::Pipeline;
 use super::geoms::Known;
 use crate::{GeomInfo, World};
-use ferrode_collide::manifold::{ManifoldPoint as ManifoldPoint3, Vec3f};
+use ferrode_collide::manifold::Vec3f;
 use ferrode_collide::pairs::{Contact, PairCache};
 use ferrode_collide::{Frame, Shape};
 use ferrode_dynamics::{ContactManifold, ManifoldPoint};
@@ -109,32 +109,33 @@ fn direction(infos: &[Option<GeomInfo>], slot: u32, frame: &Frame, normal: Vec3)
     (world - normal * normal.dot(world)).normalized()
 }
 
-/// Overlap of two faces, in metres, below which boxes pass each other side by side: a box that slides over tiles lies in
-/// them by a hair, and would run against the side of the next.
-const GRAZING: f32 = 2e-3;
+/// Overlap side by side, in metres, below which boxes pass each other: a box that slides over tiles lies in them by a hair,
+/// and would run against the side of the next.
+const GRAZING: f64 = 2e-3;
 
-/// Whether two boxes meet with faces that lie side by side, but for a strip.
+/// Whether two boxes that would meet face to face overlap across the normal by no more than a hair.
 #[inline]
 fn grazes(contact: &Contact, pairs: &PairCache, a: &Frame, b: &Frame) -> bool {
-    let boxes = |slot: u32| matches!(pairs.shape(slot), Some(Shape::Cuboid(_)));
-    let points = contact.manifold.points();
-    let Some((first, rest)) = points.split_first() else { return false };
-    if !boxes(contact.a) || !boxes(contact.b) {
+    let (Some(Shape::Cuboid(box_a)), Some(Shape::Cuboid(box_b))) =
+        (pairs.shape(contact.a), pairs.shape(contact.b))
+    else {
         return false;
-    }
+    };
     let n = contact.manifold.normal;
     let n = Vec3::new(n.x.into(), n.y.into(), n.z.into());
-    let along_axis = |frame: &Frame| frame.rotation.transpose_mul(n).abs_max() > 0.9995;
-    if !along_axis(a) || !along_axis(b) {
+    let along = |frame: &Frame| frame.rotation.transpose_mul(n).abs();
+    let (na, nb) = (along(a), along(b));
+    if na.abs_max() < 0.999 || nb.abs_max() < 0.999 {
         return false;
     }
-    let arm = |p: &ManifoldPoint3| p.anchor_a - first.anchor_a;
-    let longest = rest
-        .iter()
-        .map(arm)
-        .fold(Vec3f::ZERO, |l, v| if v.length_squared() > l.length_squared() { v } else { l });
-    let length = longest.length();
-    length < GRAZING || rest.iter().all(|p| arm(p).cross(longest).length() < GRAZING * length)
+    let (sides_a, sides_b) = (box_a.sides(), box_b.sides());
+    let between = b.position - a.position;
+    (0..3).filter(|k| na[*k] < 0.5).any(|k| {
+        let rows = &a.rotation.rows;
+        let axis = Vec3::new(rows[0][k], rows[1][k], rows[2][k]);
+        let reach = sides_a[k] + b.rotation.transpose_mul(axis).abs().dot(sides_b);
+        0.5 * reach - axis.dot(between).abs() < GRAZING
+    })
 }
 
 /// Arms, separations and impulses from the cache's manifold.
