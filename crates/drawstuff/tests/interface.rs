@@ -145,3 +145,32 @@ fn mistakes_end_the_program_with_a_line_that_names_them() {
     let (code, text) = run("jump", &headless);
     assert!(code == Some(0) && text.contains("jumped"), "{code:?} {text}");
 }
+
+#[test]
+fn it_is_installed_and_taken_out_again() {
+    let folder = scratch("installed");
+    let prefix = folder.join("prefix");
+    let run = |line: &str| {
+        let mut command = Command::new("sh");
+        command.args(["-c", line]).current_dir(&folder).env_remove("DISPLAY");
+        command
+            .env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig"))
+            .env("LD_LIBRARY_PATH", prefix.join("lib"));
+        succeed(&mut command)
+    };
+    if !Command::new("pkg-config").arg("--version").output().is_ok_and(|output| output.status.success()) {
+        return skip("there is no pkg-config (apt install pkg-config)");
+    }
+    let Some(_) = built("still") else { return };
+    let installer = here().join("../../install.sh");
+    let install = format!("sh '{}' --prefix '{}'", installer.display(), prefix.display());
+    let library = library("libdrawstuff.so");
+    run(&format!("{install} --drawstuff --from '{}'", library.parent().expect("a folder").display()));
+    let source = here().join("examples/c/pendulum.c");
+    // The line of docs/drawstuff.md.
+    run(&format!("gcc '{}' -o demo $(pkg-config --cflags --libs drawstuff ode) -lm", source.display()));
+    run("DRAWSTUFF_HEADLESS=out DRAWSTUFF_DUMP=text DRAWSTUFF_FRAMES=2 ./demo");
+    assert!(folder.join("out/calls.txt").exists());
+    run(&format!("{install} --uninstall"));
+    assert!(!prefix.join("lib").exists() && !prefix.join("include").exists());
+}

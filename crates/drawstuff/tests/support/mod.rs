@@ -165,7 +165,9 @@ impl Display {
         use std::io::{BufRead, BufReader};
         let screen = format!("{}x{}x24", size[0], size[1]);
         let mut command = Command::new("Xvfb");
-        command.args(["-displayfd", "1", "-nolisten", "tcp", "-screen", "0", &screen, "-fbdir"]).arg(folder);
+        // Without reset, when the last program has left: the next may come meanwhile.
+        command.args(["-noreset", "-displayfd", "1", "-nolisten", "tcp"]);
+        command.args(["-screen", "0", &screen, "-fbdir"]).arg(folder);
         let Ok(mut server) = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn() else {
             skip("Xvfb is not installed (apt install xvfb)");
             return None;
