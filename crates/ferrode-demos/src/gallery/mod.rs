@@ -10,6 +10,7 @@ mod cards;
 mod chain;
 mod convex;
 mod conveyor;
+mod crowd;
 mod cylinders;
 mod dominoes;
 mod double_ball;
@@ -83,5 +84,6 @@ gallery! {
     universal, hinge2, prismatic_rotoide, prismatic_universal, piston, double_ball, double_hinge, transmission, motors, amotor,
     lmotor, feedback, friction, rolling_friction, gyroscope, platforms, plane2d, tracks, conveyor, basket, space_stress, steppers,
     ragdolls, robot, newtons_cradle, four_bar, dzhanibekov, dominoes, walker, trebuchet, pendulum_wave, bounce, balance, table,
+    crowd,
 
 }
