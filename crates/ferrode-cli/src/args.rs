@@ -326,9 +326,9 @@ pub fn command() -> Command {
         .about("Run a world with each stepper, and set their times and errors side by side")
         .after_help(EXIT_CODES);
     let demo = Command::new("demo")
-        .about("Show a scene of the gallery, or list them")
+        .about("Run a scene of the gallery and check the physical property that it shows, or list them")
         .after_help(EXIT_CODES)
-        .arg(Arg::new("name").value_name("NAME").help("The demo to show; without a name they are listed"))
+        .arg(Arg::new("name").value_name("NAME").help("The demo; without a name they are listed"))
         .arg(
             Arg::new("all")
                 .long("all")
@@ -340,7 +340,7 @@ pub fn command() -> Command {
             Arg::new("headless")
                 .long("headless")
                 .action(ArgAction::SetTrue)
-                .help("Without pictures: run it to its end and check the physical property\nthat it shows"),
+                .help("Without pictures (there are none yet)"),
         );
     Command::new("ferrode")
         .about("Rigid-body dynamics from the command line: runs SDF worlds and URDF robots.")

@@ -40,7 +40,8 @@ fn a_block_sticks_and_slides_at_the_same_slope_whatever_its_heading() -> Result<
                 world.step(h)?;
             }
             let body = world.body(key)?;
-            let speed = (body.linear_velocity().x.powi(2) + body.linear_velocity().y.powi(2)).sqrt();
+            let v = body.linear_velocity();
+            let speed = (v.x * v.x + v.y * v.y).sqrt();
             println!("{heading}° at {part} µ: {speed:.2e} m/s");
             if slides {
                 // g (sin θ − µ cos θ) for two seconds.
