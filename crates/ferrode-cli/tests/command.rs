@@ -282,14 +282,14 @@ fn compare_sets_steppers_side_by_side() {
     let done = ferrode(&["compare", &data("arm.sdf"), "--time", "0.2"]);
     assert_eq!(done.code, 0, "{}", done.err);
     let head = done.out.lines().nth(2).unwrap();
-    assert!(head.contains("direct") && head.contains("quick"), "{}", done.out);
+    assert!(head.contains("direct") && head.contains("quick") && head.contains("substep"), "{}", done.out);
     for row in ["step time, median", "real-time factor", "energy change", "joint error", "penetration"] {
         assert!(done.out.contains(row), "{row} in {}", done.out);
     }
     let done = ferrode(&["compare", &data("arm.sdf"), "--time", "0.2", "--json", "-q"]);
     let lines: Vec<serde_json::Value> =
         done.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    assert_eq!(lines.len(), 2);
+    assert_eq!(lines.len(), 3);
     assert!(lines.iter().all(|line| line["energy_error_max_J"].as_f64().unwrap() < 0.1));
 }
 

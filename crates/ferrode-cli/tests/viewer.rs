@@ -5,6 +5,10 @@ mod common;
 use common::scratch;
 use std::path::PathBuf;
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
+
+/// A program that is being written cannot be started, and a test that starts another inherits the file as open: one at a time.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
 /// A copy of the command in a folder of its own.
 fn alone(test: &str) -> PathBuf {
@@ -17,6 +21,7 @@ fn alone(test: &str) -> PathBuf {
 
 #[test]
 fn without_the_viewer_one_line_says_how_to_install_it() {
+    let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let ferrode = alone("no-viewer");
     for name in ["view", "render", "replay"] {
         let done = Command::new(&ferrode).args([name, "a.sdf"]).env("PATH", "").output().unwrap();
@@ -30,6 +35,7 @@ fn without_the_viewer_one_line_says_how_to_install_it() {
 #[test]
 fn the_viewer_beside_the_command_gets_all_arguments_and_its_code_is_handed_back() {
     use std::os::unix::fs::PermissionsExt;
+    let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let ferrode = alone("stand-in-viewer");
     let viewer = ferrode.with_file_name("ferrode-view");
     std::fs::write(&viewer, "#!/bin/sh\nprintf '[%s]' \"$@\"\nexit 4\n").unwrap();

@@ -43,7 +43,9 @@ fn library_folder() -> PathBuf {
 /// Compiles a program against the installed headers and library; `None` if these, or a compiler, are missing.
 fn compile(source: &Path) -> Option<PathBuf> {
     let name = source.file_stem().expect("a file name");
-    let program = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("against-libode");
+    std::fs::create_dir_all(&folder).expect("a folder for programs");
+    let program = folder.join(name);
     let cpp = source.extension().is_some_and(|extension| extension == "cpp");
     let mut compiler = Command::new(if cpp { "c++" } else { "cc" });
     compiler.arg("-w").arg("-o").arg(&program).arg(source).args(["-lode", "-lm", "-lpthread"]);

@@ -17,7 +17,12 @@ use support::{
 const TOLERANCE: f64 = 1e-4;
 
 /// Lines that may differ by more, with the reason.
-const EXCEPTIONS: [(&str, usize, &str); 4] = [
+const EXCEPTIONS: [(&str, usize, &str); 8] = [
+    (
+        "game",
+        29,
+        "chaos: a car, dolls and falling boxes make more of the last digit of float with each touch",
+    ),
     ("handlers", 3, "tells the precision"),
     (
         "joints_a",
@@ -26,6 +31,13 @@ const EXCEPTIONS: [(&str, usize, &str); 4] = [
     ),
     ("joints_b", 4, "chain drive: rounding decides at the first step which side of the chain pulls"),
     ("rotations", 2, "a vector too small for float"),
+    (
+        "shared_data",
+        8,
+        "bodies that touch a mesh exactly at its edges: the last digit decides which triangles count",
+    ),
+    ("walls", 15, "chaos: falling bricks"),
+    ("world_sleep", 4, "a sum of steps of float reaches a time one step later"),
 ];
 
 /// Builds the library with features and gives a folder with it. The builds share what they have in common.

@@ -20,11 +20,11 @@ use ferrode_math::Vec3;
 
 /// The most times that the boxed problem is solved.
 pub(super) const MOST_SWEEPS: u32 = 60;
-/// Change of forces, as part of the largest, at which all is said.
-const CONVERGED: f64 = 1e-9;
+/// Change of forces, as part of the largest, at which all is said: while rounds converge quickly, and once they are averaged.
+const CONVERGED: [f64; 2] = [1e-9, 1e-6];
 /// Sliding, as part of the accelerations whose difference it is; less is rounding.
 const SLIDES: f64 = 1e-9;
-/// From here on steps are halved, against going round in circles.
+/// From this round on bounds are averaged.
 const DAMPED_FROM: u32 = 20;
 
 /// Memory of the method.
@@ -128,7 +128,11 @@ impl Workspace {
         fps: f64,
         slip: impl Fn(&Island, usize, &Row) -> [f64; 2],
     ) {
-        let keep = if sweep >= DAMPED_FROM { 0.5 } else { 0.0 };
+        // The mean of all rounds from there on: it settles where the rounds themselves go in a circle (Krasnosel'skiĭ 1955, Mann 1953).
+        let keep = match sweep.checked_sub(DAMPED_FROM) {
+            Some(rounds) => 1.0 - 1.0 / f64::from(rounds + 2),
+            None => 0.0,
+        };
         for c in &mut self.contacts {
             let normal = island.lambda[c.normal].max(0.0);
             c.bound = keep * c.bound + (1.0 - keep) * normal;
@@ -149,7 +153,8 @@ impl Workspace {
             if size > 0.0 {
                 c.direction = [turned[0] / size, turned[1] / size];
             }
-            c.across = if slides { speed / c.bound } else { 0.0 };
+            let across = if slides { speed / c.bound } else { 0.0 };
+            c.across = keep * c.across + (1.0 - keep) * across;
             let [x, y] = c.direction;
             island.rows[c.tangent] = turned_row(&c.rows, [x, y], c.bound, 0.0);
             island.rows[c.tangent + 1] = turned_row(&c.rows, [-y, x], c.bound, c.across / fps);
@@ -192,9 +197,9 @@ impl Workspace {
         self.before.extend_from_slice(&island.lambda);
     }
 
-    /// Whether a change is small enough to end.
-    pub fn converged(change: f64) -> bool {
-        change <= CONVERGED
+    /// Whether the change of a round is small enough to end.
+    pub fn converged(change: f64, sweep: u32) -> bool {
+        change <= CONVERGED[usize::from(sweep >= DAMPED_FROM)]
     }
 
     /// Puts the rows back as the joints wrote them.

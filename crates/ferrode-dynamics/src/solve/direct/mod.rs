@@ -174,7 +174,6 @@ fn solve_cone(
     report: &mut IslandSolve,
 ) -> Solved {
     work.cone.begin(island);
-    let mut solved = Solved::Partly;
     let mut start = Start::Step;
     for sweep in 0..cone::MOST_SWEEPS {
         work.cone.push(island);
@@ -189,18 +188,17 @@ fn solve_cone(
         report.residual = 0.0;
         report.largest_force = 0.0;
         let factorisations = report.factorisations;
-        solved = solve_boxed(island, settings, number, start, work, report);
+        let solved = solve_boxed(island, settings, number, start, work, report);
         report.factorisations += factorisations;
         report.friction_sweeps += 1;
         start = Start::Problem;
         let change = work.cone.turn_back(island);
         work.cone.restore(island);
-        if cone::Workspace::converged(change) {
+        if cone::Workspace::converged(change, sweep) {
             return solved;
         }
     }
     // Not at rest, but each round is a solution for the bounds of the one before.
-    let _ = solved;
     Solved::Partly
 }
 
