@@ -8,9 +8,8 @@ use super::{
 use crate::fault::{Outcome, export, fence, guard};
 use crate::record::{Required, record};
 use crate::slab::{Handle, Pool, Record, Tag};
-use core::cell::RefCell;
 use core::ffi::{c_char, c_int, c_uint, c_void};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError, RwLock};
 use std::time::Duration;
 
 type MutexGroupId = Handle<MutexGroup>;
@@ -19,7 +18,8 @@ type MutexGroupId = Handle<MutexGroup>;
 #[derive(Default)]
 pub struct MutexGroup {
     tag: Tag,
-    mutexes: RefCell<Arc<[Lock]>>,
+    /// Looked up by many threads at once.
+    mutexes: RwLock<Arc<[Lock]>>,
 }
 record!(MutexGroup, MUTEX_GROUPS, 8);
 
@@ -64,7 +64,8 @@ unsafe extern "C-unwind" fn alloc_mutex_group(
     guard("AllocMutexGroup", || {
         calls(implementation)?;
         let group = MutexGroup::pool().create();
-        *group.mutexes.borrow_mut() = (0..count).map(|_| Lock::default()).collect();
+        *group.mutexes.write().unwrap_or_else(PoisonError::into_inner) =
+            (0..count).map(|_| Lock::default()).collect();
         Ok(pointer(MutexGroupId::of(group)))
     })
 }
@@ -72,16 +73,16 @@ unsafe extern "C-unwind" fn alloc_mutex_group(
 unsafe extern "C-unwind" fn free_mutex_group(_implementation: *mut c_void, group: *mut c_void) {
     guard("FreeMutexGroup", || {
         let group = handle::<MutexGroup>(group).get()?;
-        *group.mutexes.borrow_mut() = Arc::default();
+        *group.mutexes.write().unwrap_or_else(PoisonError::into_inner) = Arc::default();
         MutexGroup::pool().destroy(group);
         Ok(())
     });
 }
 
-/// A mutex of a group. Groups are changed only when they are made and freed, so sharing their cell is the program's
-/// contract; the mutexes outlive the look-up.
+/// A mutex of a group. The mutexes outlive the look-up.
 fn mutex(group: *mut c_void, index: c_uint, work: impl FnOnce(&Lock)) -> Outcome<()> {
-    let mutexes = Arc::clone(&handle::<MutexGroup>(group).get()?.mutexes.borrow());
+    let group = handle::<MutexGroup>(group).get()?;
+    let mutexes = Arc::clone(&group.mutexes.read().unwrap_or_else(PoisonError::into_inner));
     work(mutexes.get(index as usize).ok_or(crate::fault::Fault::ARGUMENT)?);
     Ok(())
 }

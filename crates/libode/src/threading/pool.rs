@@ -4,9 +4,8 @@ use super::{Calls, ImplementationId};
 use crate::fault::export;
 use crate::record::{Required, record};
 use crate::slab::{Handle, Pool, Record, Tag};
-use core::cell::RefCell;
 use core::ffi::{c_uint, c_void};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard};
 use std::thread::JoinHandle;
 
 type PoolId = Handle<PoolRecord>;
@@ -15,9 +14,16 @@ type PoolId = Handle<PoolRecord>;
 #[derive(Default)]
 pub struct PoolRecord {
     tag: Tag,
-    threads: RefCell<Option<Threads>>,
+    /// Threads of the program may wait for the pool side by side.
+    threads: RwLock<Option<Threads>>,
 }
 record!(PoolRecord, POOLS, 9);
+
+impl PoolRecord {
+    fn threads(&self) -> RwLockReadGuard<'_, Option<Threads>> {
+        self.threads.read().unwrap_or_else(PoisonError::into_inner)
+    }
+}
 
 struct Threads {
     desk: Arc<Desk>,
@@ -131,24 +137,24 @@ export! {
     ) -> PoolId {
         let Ok(threads) = Threads::start(thread_count, stack_size) else { return Ok(PoolId::NULL) };
         let pool = PoolRecord::pool().create();
-        *pool.threads.borrow_mut() = Some(threads);
+        *pool.threads.write().unwrap_or_else(PoisonError::into_inner) = Some(threads);
         PoolId::of(pool)
     }
     fn dThreadingThreadPoolServeMultiThreadedImplementation(pool: PoolId, implementation: ImplementationId) {
         let calls = implementation.get()?.calls()?;
-        if let Some(threads) = &*pool.get()?.threads.borrow() {
+        if let Some(threads) = &*pool.get()?.threads() {
             threads.serve(calls);
         }
     }
     fn dThreadingThreadPoolWaitIdleState(pool: PoolId) {
-        if let Some(threads) = &*pool.get()?.threads.borrow() {
+        if let Some(threads) = &*pool.get()?.threads() {
             drop(threads.desk.wait_while(|task| task.busy > 0));
         }
     }
     fn dThreadingFreeThreadPool(pool: PoolId) {
         if !pool.is_null() {
             let pool = pool.get()?;
-            if let Some(threads) = pool.threads.take() {
+            if let Some(threads) = pool.threads.write().unwrap_or_else(PoisonError::into_inner).take() {
                 threads.stop();
             }
             PoolRecord::pool().destroy(pool);
