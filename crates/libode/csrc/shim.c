@@ -74,13 +74,10 @@ void ferrode_ode_warn(int number, const char *text, int text_length, const char 
         ferrode_ode_message(number, "%.*s", text_length, text);
 }
 
-/* One lock a kind of record. They are the C library's, so that the race checkers of C programs see them. */
-static pthread_mutex_t locks[16] = {
-    PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER,
-    PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER,
-    PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER,
-    PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER,
-};
+/* One lock a kind of record, then sixteen that the contents of records share. They are the C library's, so that the race
+   checkers of C programs see them. */
+#define FOUR PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER, PTHREAD_MUTEX_INITIALIZER
+static pthread_mutex_t locks[32] = {FOUR, FOUR, FOUR, FOUR, FOUR, FOUR, FOUR, FOUR};
 
-void ferrode_ode_lock(int kind) { pthread_mutex_lock(&locks[kind]); }
-void ferrode_ode_unlock(int kind) { pthread_mutex_unlock(&locks[kind]); }
+void ferrode_ode_lock(int which) { pthread_mutex_lock(&locks[which]); }
+void ferrode_ode_unlock(int which) { pthread_mutex_unlock(&locks[which]); }

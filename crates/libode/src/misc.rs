@@ -20,23 +20,21 @@ pub fn set_seed(seed: u32) {
     SEED.store(seed, Ordering::Relaxed);
 }
 
-/// Draws from the stream.
-pub fn with_random<T>(draw: impl FnOnce(&mut OdeRandom) -> T) -> T {
-    let mut random = OdeRandom::new(seed());
-    let drawn = draw(&mut random);
-    set_seed(random.seed());
-    drawn
+/// Draws from the stream what no other thread gets too; `draw` is called again if one came in between.
+pub fn with_random<T>(mut draw: impl FnMut(&mut OdeRandom) -> T) -> T {
+    loop {
+        let before = seed();
+        let mut random = OdeRandom::new(before);
+        let drawn = draw(&mut random);
+        if SEED.compare_exchange(before, random.seed(), Ordering::Relaxed, Ordering::Relaxed).is_ok() {
+            return drawn;
+        }
+    }
 }
 
-/// One draw that no other thread gets too.
+/// One draw.
 fn next() -> u32 {
-    let step = |seed| {
-        let mut random = OdeRandom::new(seed);
-        random.next_u32();
-        Some(random.seed())
-    };
-    let before = SEED.fetch_update(Ordering::Relaxed, Ordering::Relaxed, step);
-    OdeRandom::new(before.unwrap_or_else(|seed| seed)).next_u32()
+    with_random(OdeRandom::next_u32)
 }
 
 /// A stream of the C library's, `FILE`.

@@ -10,6 +10,7 @@ use crate::real::{Real, Real4, Real12, mat3, matrix3, padded, quat, quaternion, 
 use crate::slab::{Handle, Link, Pool, Record, Tag};
 use core::cell::{Cell, RefCell};
 use core::ffi::c_void;
+use core::sync::atomic::{AtomicUsize, Ordering};
 use ferrode_dynamics::{BodyKey, BodyState, DirectSettings, JointKey, JointType, World};
 use std::collections::VecDeque;
 
@@ -46,8 +47,10 @@ pub struct WorldRecord {
     tag: Tag,
     /// The engine's world. During a moved callback it is the step's own reborrow.
     engine: Cell<Option<*mut World>>,
-    /// Whether a step runs: the engine's state is the newer one then, not the records'.
-    pub stepping: Cell<bool>,
+    /// The thread in which a step runs, 0 for none. For that thread, which only comes here from callbacks, the engine's state
+    /// is the newer one, not the records'. Others must not be here; should one look all the same, as a program may that
+    /// draws while it steps, it sees the records, not an engine at work.
+    stepping: AtomicUsize,
     pub data: Cell<*const c_void>,
     pub settings: crate::stepping::StepSettings,
     /// Joints that want their forces written down.
@@ -148,6 +151,22 @@ impl WorldRecord {
         work(unsafe { &mut *engine })
     }
 
+    /// A step of this thread begins or ends.
+    pub fn set_stepping(&self, on: bool) {
+        self.stepping.store(if on { this_thread() } else { 0 }, Ordering::Relaxed);
+    }
+
+    /// Whether a step of this thread runs.
+    #[inline]
+    fn steps_here(&self) -> bool {
+        let thread = self.stepping.load(Ordering::Relaxed);
+        thread != 0 && thread == this_thread()
+    }
+
+    fn is_stepping(&self) -> bool {
+        self.stepping.load(Ordering::Relaxed) != 0
+    }
+
     /// The pointer by which calls reach the engine; a step exchanges it while it calls out.
     pub fn lend(&self, engine: *mut World) -> Option<*mut World> {
         self.engine.replace(Some(engine))
@@ -183,7 +202,7 @@ impl WorldRecord {
     /// forgotten, since the step still runs on it.
     pub fn destroy_engine(&self) {
         if let Some(engine) = self.engine.take()
-            && !self.stepping.get()
+            && !self.is_stepping()
         {
             // SAFETY: the pointer is from Box::into_raw, no step runs on it, and it is out of the record now.
             drop(unsafe { Box::from_raw(engine) });
@@ -194,6 +213,15 @@ impl WorldRecord {
 /// The handle that was kept as a number of the caller's in the engine.
 pub fn handle_of<T: Record>(user_data: u64) -> Handle<T> {
     Handle::from_address(user_data as usize)
+}
+
+/// A number that no other living thread has.
+fn this_thread() -> usize {
+    thread_local! {
+        static HERE: u8 = const { 0 };
+    }
+    // Nothing to drop, so that it is there to the end.
+    HERE.with(|here| core::ptr::from_ref(here).addr())
 }
 
 /// The number to keep in the engine.
@@ -247,7 +275,7 @@ impl BodyRecord {
     /// the change in at once.
     #[inline]
     pub fn change(&self, work: impl FnOnce(&Self)) {
-        let stepping = self.world.get().live().filter(|world| world.stepping.get());
+        let stepping = self.world.get().live().filter(|world| world.steps_here());
         if let Some(world) = stepping {
             self.publish(world);
             work(self);
@@ -260,7 +288,7 @@ impl BodyRecord {
     /// The state as it is now, for a getter.
     #[inline]
     pub fn current(&self) -> &Self {
-        if let Some(world) = self.world.get().live().filter(|world| world.stepping.get()) {
+        if let Some(world) = self.world.get().live().filter(|world| world.steps_here()) {
             self.publish(world);
         }
         self
@@ -288,7 +316,7 @@ impl BodyRecord {
 
     /// Takes outside changes in, before the engine needs the body. During a step there is nothing to take in.
     pub fn take_in(&self) {
-        if let Some(world) = self.world.get().live().filter(|world| !world.stepping.get()) {
+        if let Some(world) = self.world.get().live().filter(|world| !world.is_stepping()) {
             world.engine(|engine| self.take_in_to(engine));
         }
     }

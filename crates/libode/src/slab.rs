@@ -5,10 +5,10 @@
 //! without looking at what it points to. So no handle, however wrong, leads to undefined behaviour.
 
 use core::alloc::Layout;
-use core::cell::{Cell, UnsafeCell};
+use core::cell::UnsafeCell;
 use core::ffi::c_int;
 use core::ptr::NonNull;
-use core::sync::atomic::{AtomicUsize, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::collections::VecDeque;
 
 /// Size and alignment of a chunk.
@@ -51,14 +51,24 @@ fn add_chunk(address: usize, kind: usize) -> bool {
     false
 }
 
-/// The first field of every record.
+/// The first field of every record: whether it lives. Atomic, since a stale handle may be looked at in one thread while its
+/// record gets a new life in another.
 #[derive(Debug, Default)]
-pub struct Tag(Cell<bool>);
+pub struct Tag(AtomicBool);
 
 impl Tag {
     /// Makes a dead record that was kept back a living one again.
     pub fn revive(&self) {
-        self.0.set(true);
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    #[inline]
+    fn lives(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
+    fn die(&self) {
+        self.0.store(false, Ordering::Relaxed);
     }
 }
 
@@ -72,7 +82,7 @@ pub trait Record: Sized + 'static {
 
     /// Marks a record as dead, to be kept back by whoever has it.
     fn retire(&self) {
-        self.tag().0.set(false);
+        self.tag().die();
     }
 
     /// Its tag.
@@ -94,13 +104,19 @@ unsafe extern "C" {
 }
 
 /// A kind's lock, held: the C library's, which the race checkers of C programs understand.
-struct Held(c_int);
+pub struct Held(c_int);
 
 impl Held {
     fn new(kind: usize) -> Self {
-        // SAFETY: a kind is below 16, the number of locks.
+        // SAFETY: below 32, the number of locks.
         unsafe { ferrode_ode_lock(kind as c_int) };
         Self(kind as c_int)
+    }
+
+    /// The lock of one record's content, for those who look at it in several threads. Records share a few locks, so nothing
+    /// else may be locked, and nobody called, while this one is held.
+    pub fn content<T>(record: &T) -> Self {
+        Self::new(16 + (core::ptr::from_ref(record).addr() / size_of::<T>().max(1)) % 16)
     }
 }
 
@@ -141,7 +157,7 @@ impl<T: Record> Pool<T> {
         unsafe {
             place.as_ptr().write(T::blank());
             let record = place.as_ref();
-            record.tag().0.set(true);
+            record.tag().revive();
             record
         }
     }
@@ -173,7 +189,7 @@ impl<T: Record> Pool<T> {
 
     /// Marks a record as dead.
     pub fn destroy(&self, record: &'static T) {
-        record.tag().0.set(false);
+        record.tag().die();
         let _held = Held::new(T::KIND);
         // SAFETY: under the kind's lock nobody else uses the queue.
         unsafe { &mut *self.free.get() }.push_back(NonNull::from(record));
@@ -255,7 +271,7 @@ impl<T: Record> Link<T> {
     /// The record, if it lives.
     #[inline]
     pub fn live(self) -> Option<&'static T> {
-        self.0.filter(|record| record.tag().0.get())
+        self.0.filter(|record| record.tag().lives())
     }
 
     /// As the program sees it.
@@ -284,12 +300,12 @@ impl<T: Record> Handle<T> {
     /// The living record behind the handle.
     #[inline]
     pub fn live(self) -> Option<&'static T> {
-        self.record().filter(|record| record.tag().0.get())
+        self.record().filter(|record| record.tag().lives())
     }
 
     /// The dead record behind a handle that is known to be one.
     pub fn dead(self) -> Option<&'static T> {
-        self.record().filter(|record| !record.tag().0.get())
+        self.record().filter(|record| !record.tag().lives())
     }
 
     #[inline]

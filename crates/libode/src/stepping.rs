@@ -126,7 +126,7 @@ pub fn step(world: &'static WorldRecord, method: Method, stepsize: Real) -> Outc
         return Ok(0);
     }
     // A callback that left by longjmp may have left this set.
-    world.stepping.set(false);
+    world.set_stepping(false);
     world.take_in_all();
     mark_feedback(world);
 
@@ -134,7 +134,7 @@ pub fn step(world: &'static WorldRecord, method: Method, stepsize: Real) -> Outc
     let mut random = OdeRandom::new(seed);
     let mut observe = |engine: &mut World, key: BodyKey| call_back(world, engine, key);
     let engine = world.engine(core::ptr::from_mut);
-    world.stepping.set(true);
+    world.set_stepping(true);
     // SAFETY: as in `WorldRecord::engine`; when the step calls out, `call_back` lends its own reborrow to other calls.
     let engine_world = unsafe { &mut *engine };
     let report = match method {
@@ -144,7 +144,7 @@ pub fn step(world: &'static WorldRecord, method: Method, stepsize: Real) -> Outc
         }
     };
     world.restore(Some(engine));
-    world.stepping.set(false);
+    world.set_stepping(false);
     if random.seed() != seed {
         misc::set_seed(random.seed());
     }

@@ -53,7 +53,8 @@ fn callbacks_that_do_not_come_back_leave_the_library_usable() {
 
 #[test]
 fn objects_may_be_destroyed_last_of_all() {
-    let wanted = "contacts 1\nmain ends\nexit handler\nlate contacts 1\nlate pair\nlate end\n";
+    let wanted =
+        "early all\ncontacts 1\nmain ends\nexit handler\nlate contacts 1\nlate all\nlate pair\nlate end\n";
     check("last_things", wanted);
 }
 

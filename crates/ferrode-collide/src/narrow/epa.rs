@@ -62,10 +62,15 @@ fn tetrahedron(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex, scale: f64) -> Opt
 pub(crate) fn epa(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex) -> Option<Depth> {
     let scale = a.reach() + b.reach();
     let corners = tetrahedron(a, b, simplex, scale)?;
-    POLYTOPE.with(|p| match p.try_borrow_mut() {
+    let by_kept = POLYTOPE.try_with(|p| match p.try_borrow_mut() {
         Ok(mut p) => expand(a, b, corners, scale, &mut p),
         // Not reached: nothing within asks for a depth again.
         Err(_) => None,
+    });
+    // When a thread ends, its memory goes first; what is destroyed after may still collide.
+    by_kept.unwrap_or_else(|_| {
+        let mut polytope = Polytope::EMPTY;
+        expand(a, b, corners, scale, &mut polytope)
     })
 }
 

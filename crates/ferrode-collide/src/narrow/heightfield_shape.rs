@@ -117,7 +117,8 @@ fn collide_zone(
     if let Shape::TriMesh(mesh) = shape {
         return heightfield_trimesh(field, zone, mesh, local, out);
     }
-    let mut work = WORK.take();
+    // When a thread ends, its memory goes first; what is destroyed after may still collide.
+    let mut work = WORK.try_with(Cell::take).unwrap_or_default();
     let Work { tiles, used, found } = &mut work;
     tiles.clear();
     used.clear();
@@ -140,7 +141,7 @@ fn collide_zone(
     if wide && matches!(shape, Shape::Sphere(_) | Shape::Cuboid(_) | Shape::Capsule(_)) {
         add_corners(shape, local, tiles, used, out);
     }
-    WORK.set(work);
+    WORK.try_with(|kept| kept.set(work)).ok();
 }
 
 /// Corners of the field inside the shape, with the normal of the first triangle it passed by. Those in `used` are done.

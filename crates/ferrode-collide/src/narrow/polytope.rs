@@ -44,7 +44,7 @@ pub(super) struct Polytope {
 }
 
 impl Polytope {
-    const EMPTY: Self = Self {
+    pub(super) const EMPTY: Self = Self {
         vertices: [Vertex { w: Vec3::ZERO, a: Vec3::ZERO, b: Vec3::ZERO }; VERTICES],
         vertex_count: 0,
         faces: [Face {

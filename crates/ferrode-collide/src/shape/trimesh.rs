@@ -1,3 +1,5 @@
+mod refit;
+
 use super::{LARGEST, ShapeError};
 use crate::Frame;
 use crate::narrow::ContactMerge;
@@ -29,6 +31,8 @@ struct MeshData {
     first_triangle: Vec<u32>,
     tree: AabbTree,
     bounds: Aabb,
+    /// Of a mesh whose vertices have moved.
+    links: Option<Box<refit::Links>>,
 }
 
 /// What lies beyond an edge of a triangle.
@@ -68,24 +72,13 @@ impl TriMesh {
         if triangles.is_empty() {
             return Err(ShapeError { what: "number of triangles of a mesh", value: 0.0 });
         }
-        if let Some(p) = vertices.iter().find(|p| !(p.is_finite() && p.abs_max() <= LARGEST)) {
-            return Err(ShapeError { what: "coordinate of a mesh's vertex", value: p.abs_max() });
-        }
+        check_vertices(&vertices)?;
         let bad = triangles.iter().flatten().find(|&&i| i as usize >= vertices.len());
         if let Some(bad) = bad {
             return Err(ShapeError { what: "vertex number of a triangle", value: f64::from(*bad) });
         }
         let at = |i: u32| vertices[i as usize];
-        let normal = |t: &[u32; 3]| {
-            let (e, f) = (at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
-            let n = e.cross(f);
-            if n.length() > 1e-14 * e.length() * f.length() {
-                n.normalized_or(Vec3::ZERO)
-            } else {
-                Vec3::ZERO
-            }
-        };
-        let normals: Vec<Vec3> = triangles.iter().map(normal).collect();
+        let normals: Vec<Vec3> = triangles.iter().map(|t| normal_of(t.map(at))).collect();
         let neighbours = neighbours(&vertices, &triangles, &normals);
         let use_flags = use_flags(&vertices, &triangles, &normals);
         let mut first_triangle = vec![u32::MAX; vertices.len()];
@@ -116,6 +109,7 @@ impl TriMesh {
                 first_triangle,
                 tree,
                 bounds,
+                links: None,
             }),
         })
     }
@@ -230,7 +224,22 @@ fn place(p: Vec3) -> [u64; 3] {
     p.to_array().map(|x| (x + 0.0).to_bits())
 }
 
-fn neighbours(vertices: &[Vec3], triangles: &[[u32; 3]], normals: &[Vec3]) -> Vec<[Neighbour; 3]> {
+fn check_vertices(vertices: &[Vec3]) -> Result<(), ShapeError> {
+    match vertices.iter().find(|p| !(p.is_finite() && p.abs_max() <= LARGEST)) {
+        Some(p) => Err(ShapeError { what: "coordinate of a mesh's vertex", value: p.abs_max() }),
+        None => Ok(()),
+    }
+}
+
+/// Unit normal of a triangle; zero if it has no area.
+fn normal_of([a, b, c]: [Vec3; 3]) -> Vec3 {
+    let (e, f) = (b - a, c - a);
+    let n = e.cross(f);
+    if n.length() > 1e-14 * e.length() * f.length() { n.normalized_or(Vec3::ZERO) } else { Vec3::ZERO }
+}
+
+/// The number of each vertex's place, and all edges, those with the same ends side by side: (ends, triangle, edge).
+fn edges_by_ends(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u32, u32, u32, u8)>) {
     let mut numbers = BTreeMap::new();
     let place_of: Vec<u32> = vertices
         .iter()
@@ -239,7 +248,6 @@ fn neighbours(vertices: &[Vec3], triangles: &[[u32; 3]], normals: &[Vec3]) -> Ve
             *numbers.entry(place(p)).or_insert(next)
         })
         .collect();
-    // All edges with the same ends side by side: (ends, triangle, edge).
     let mut edges: Vec<(u32, u32, u32, u8)> = Vec::with_capacity(3 * triangles.len());
     for (i, t) in triangles.iter().enumerate() {
         for e in 0..3 {
@@ -248,6 +256,11 @@ fn neighbours(vertices: &[Vec3], triangles: &[[u32; 3]], normals: &[Vec3]) -> Ve
         }
     }
     edges.sort_unstable();
+    (place_of, edges)
+}
+
+fn neighbours(vertices: &[Vec3], triangles: &[[u32; 3]], normals: &[Vec3]) -> Vec<[Neighbour; 3]> {
+    let (_, edges) = edges_by_ends(vertices, triangles);
     let mut found = vec![[Neighbour::None; 3]; triangles.len()];
     for pair in edges.windows(2) {
         let [(a0, b0, t0, e0), (a1, b1, t1, e1)] = [pair[0], pair[1]];

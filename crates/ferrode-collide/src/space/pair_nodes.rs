@@ -62,6 +62,11 @@ impl Nodes {
         self.pairs.is_empty()
     }
 
+    /// The highest number of a node.
+    pub fn last(&self) -> Option<u32> {
+        (2 * self.pairs.len() as u32).checked_sub(1)
+    }
+
     /// Adds a pair of nodes that overlap nothing, and returns the first.
     pub fn add_pair(&mut self) -> u32 {
         self.pairs.push(Self::VACANT);

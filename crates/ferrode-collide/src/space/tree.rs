@@ -1,5 +1,7 @@
 //! A binary tree over boxes that stay: the triangles of a mesh.
 
+mod refit;
+
 use super::f32_box::{Box32, Pending};
 use super::pair_nodes::{Node, Nodes, PairNode};
 use super::probe::{Probe, RayLanes, nearer};

@@ -5,7 +5,7 @@ use crate::contact::ContactGeomRecord;
 use crate::fault::{Fault, Outcome, export, export_calling};
 use crate::real::{In, Real};
 use crate::record::Required;
-use core::cell::{Cell, RefCell};
+use core::cell::Cell;
 use core::ffi::{c_int, c_void};
 use core::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -65,12 +65,21 @@ fn class_of(number: c_int) -> Option<ClassRecord> {
 /// What only geoms of the program's classes, and wrappers, have.
 #[derive(Default)]
 pub struct ClassGeom {
-    /// The program's bytes; reals, so that they are aligned for anything.
-    block: RefCell<Box<[u128]>>,
+    /// The program's bytes, zero at first. Only their address is used here, since the program writes to them as it likes.
+    block: Cell<Option<*mut [u128]>>,
     /// The geom that a wrapper moves.
     inner: Cell<GeomId>,
     owns: Cell<bool>,
     info: Cell<bool>,
+}
+
+impl ClassGeom {
+    fn free(&self) {
+        if let Some(block) = self.block.take() {
+            // SAFETY: from Box::into_raw in `dCreateGeom`; taken, so given back once.
+            drop(unsafe { Box::from_raw(block) });
+        }
+    }
 }
 
 impl GeomRecord {
@@ -113,7 +122,7 @@ impl GeomRecord {
         if let Some(inner) = self.inner().filter(|_| self.own.owns.get()) {
             inner.destroy()?;
         }
-        *self.own.block.borrow_mut() = Box::default();
+        self.own.free();
         Ok(())
     }
 }
@@ -165,13 +174,13 @@ export! {
     fn dCreateGeom(class: c_int) -> GeomId {
         let bytes = class_of(class).ok_or(Fault::user("not a custom class"))?.bytes as usize;
         let handle = GeomRecord::create(class, None, None, GeomId::NULL)?;
-        *handle.get()?.own.block.borrow_mut() = vec![0; bytes.div_ceil(size_of::<u128>())].into();
+        handle.get()?.own.block.set(Some(Box::into_raw(vec![0; bytes.div_ceil(size_of::<u128>())].into())));
         handle
     }
     fn dGeomGetClassData(geom: GeomId) -> *mut c_void {
         let geom = geom.get()?;
         class_of(geom.class.get()).ok_or(Fault::user("not a custom class"))?;
-        geom.own.block.borrow_mut().as_mut_ptr().cast()
+        geom.own.block.get().map_or(core::ptr::null_mut(), <*mut [u128]>::cast)
     }
     fn dSetColliderOverride(i: c_int, j: c_int, collider: Option<Collider>) {
         let place = |n: c_int| usize::try_from(n).ok().filter(|n| *n < CLASSES).ok_or(Fault::ARGUMENT);

@@ -5,6 +5,7 @@ use super::{GeomId, GeomRecord, class};
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{Real, vec3};
 use crate::record::Required;
+use crate::slab::Held;
 use core::cell::Cell;
 use core::ffi::c_uint;
 use ferrode_collide::{Convex, Shape};
@@ -80,6 +81,8 @@ impl GeomRecord {
     /// stays.
     pub fn refresh_convex(&self) {
         let Some(arrays) = self.convex.arrays.get() else { return };
+        // The first of several threads that find a change takes it over.
+        let _held = Held::content(self);
         if self.convex.seen.with(|seen| arrays.is_as(seen)) {
             return;
         }

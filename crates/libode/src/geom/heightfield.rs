@@ -8,9 +8,10 @@ use crate::fault::{Fault, Outcome, export};
 use crate::geom::kept::Kept;
 use crate::real::{Real, f};
 use crate::record::{Required, record};
-use crate::slab::{Handle, Pool, Record, Tag};
+use crate::slab::{Handle, Held, Pool, Record, Tag};
 use core::cell::Cell;
 use core::ffi::{c_double, c_float, c_int, c_short, c_uchar, c_void};
+use core::sync::atomic::{AtomicU64, Ordering};
 use ferrode_collide::shape::Heightfield;
 use ferrode_collide::{Frame, Shape};
 use ferrode_math::{Aabb, Vec3};
@@ -59,7 +60,7 @@ pub struct FieldRecord {
     field: Kept<Option<Heightfield>>,
     /// Whether a function's heights have no bounds.
     unbounded: Cell<bool>,
-    version: Cell<u64>,
+    version: AtomicU64,
 }
 record!(FieldRecord, FIELDS, 15);
 
@@ -67,7 +68,7 @@ record!(FieldRecord, FIELDS, 15);
 #[derive(Default)]
 pub struct FieldGeom {
     data: Cell<FieldId>,
-    version: Cell<u64>,
+    version: AtomicU64,
     pub placeable: Cell<bool>,
 }
 
@@ -192,7 +193,7 @@ impl FieldRecord {
         self.grid.set(Some(grid));
         self.samples.set(if copy { Samples::Copied } else { samples });
         self.unbounded.set(function);
-        self.version.set(self.version.get() + 1);
+        self.version.fetch_add(1, Ordering::Relaxed);
         Ok(())
     }
 
@@ -205,7 +206,7 @@ impl FieldRecord {
             }),
         );
         self.unbounded.set(false);
-        self.version.set(self.version.get() + 1);
+        self.version.fetch_add(1, Ordering::Relaxed);
     }
 
     /// What a geom with this box in the field's frame may touch. The program's function may be asked, so nothing is
@@ -264,9 +265,15 @@ impl GeomRecord {
             return;
         }
         let Some(data) = self.field.data.get().live() else { return };
-        if self.field.version.get() != data.version.get() {
-            self.field.version.set(data.version.get());
+        let version = data.version.load(Ordering::Relaxed);
+        if self.field.version.load(Ordering::Acquire) == version {
+            return;
+        }
+        // The first of several threads that find a new build takes it over.
+        let _held = Held::content(self);
+        if self.field.version.load(Ordering::Acquire) != version {
             self.shape.set(data.field.with(Option::clone).map(Shape::Heightfield));
+            self.field.version.store(version, Ordering::Release);
         }
     }
 
@@ -360,7 +367,7 @@ export! {
         let geom = field_geom(geom)?;
         data.get()?;
         geom.field.data.set(data);
-        geom.field.version.set(0)
+        geom.field.version.store(super::NO_BUILD, Ordering::Release)
     }
     fn dGeomHeightfieldGetHeightfieldData(geom: GeomId) -> FieldId { field_geom(geom)?.field.data.get() }
 }

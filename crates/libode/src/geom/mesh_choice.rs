@@ -3,22 +3,20 @@
 //! Nothing is borrowed while the program is asked.
 
 use super::heightfield::View;
+use super::trimesh::MergeCallback;
 use super::{GeomId, GeomRecord, class};
 use crate::real::r;
 use core::ffi::c_int;
-use ferrode_collide::narrow::triangle_candidates;
-use ferrode_collide::{Frame, GeomContact, Shape, TriMesh};
+use ferrode_collide::narrow::{ContactMerge, collide_frames, triangle_candidates};
+use ferrode_collide::{CollideOptions, Frame, GeomContact, Shape, TriMesh};
 use ferrode_math::Vec3;
-
-/// ODE's modes of merging contacts of a ball with a mesh.
-const MERGE_NORMALS: c_int = 2;
-const MERGE_FULL: c_int = 3;
 
 /// What the program has to say about one collision of a mesh with a ball, box, capsule, cylinder or ray.
 pub struct MeshChoice {
     mesh: &'static GeomRecord,
     other: &'static GeomRecord,
-    frame: Frame,
+    /// The mesh's, and the other's.
+    frames: [Frame; 2],
     /// Whether the mesh is the first of the two.
     first: bool,
     /// The triangles that it keeps, if it doesn't keep all: a mesh of these, and their numbers.
@@ -35,8 +33,8 @@ impl MeshChoice {
             let kind = other.class.get();
             let asked =
                 matches!(kind, class::SPHERE | class::BOX | class::CAPSULE | class::CYLINDER | class::RAY);
-            let merges = m.merge_mode.get() >= MERGE_NORMALS && kind == class::SPHERE;
-            mesh.class.get() == class::TRIMESH && (asks && asked || merges)
+            let names = m.names_merged().is_some() && kind == class::SPHERE;
+            mesh.class.get() == class::TRIMESH && (asks && asked || names)
         };
         let (mesh, frame, other, other_frame, first) = if speaks(a, b) {
             (a, fa, b, fb, true)
@@ -45,7 +43,8 @@ impl MeshChoice {
         } else {
             return None;
         };
-        let mut choice = Self { mesh, other, frame: *frame, first, part: None, nothing: false };
+        let frames = [*frame, *other_frame];
+        let mut choice = Self { mesh, other, frames, first, part: None, nothing: false };
         if !choice.is_ray() {
             choice.ask(other_frame);
         }
@@ -79,7 +78,7 @@ impl MeshChoice {
             return;
         }
         let (Some(whole), Some(shape)) = (self.whole(), self.other.shape.with(Option::clone)) else { return };
-        let candidates = triangle_candidates(&shape, other_frame, &whole, &self.frame);
+        let candidates = triangle_candidates(&shape, other_frame, &whole, &self.frames[0]);
         let (mesh, other) = self.ids();
         if let Some(array) = array
             && !candidates.is_empty()
@@ -97,7 +96,9 @@ impl MeshChoice {
         }
         let soup: Vec<[Vec3; 3]> = kept.iter().map(|i| whole.corners(*i)).collect();
         match TriMesh::from_triangles(&soup) {
-            Ok(part) if !kept.is_empty() => self.part = Some((part, kept)),
+            Ok(part) if !kept.is_empty() => {
+                self.part = Some((part.with_sphere_merge(whole.sphere_merge()), kept));
+            }
             _ => self.nothing = true,
         }
     }
@@ -107,7 +108,7 @@ impl MeshChoice {
         let view = if self.nothing {
             View::Nothing
         } else if let Some((part, _)) = &self.part {
-            View::Part(Box::new(Shape::from(part.clone())), self.frame)
+            View::Part(Box::new(Shape::from(part.clone())), self.frames[0])
         } else {
             View::Whole
         };
@@ -124,19 +125,39 @@ impl MeshChoice {
 
     /// Names triangles by their numbers in the whole mesh, drops the hits that the program doesn't want, and merges.
     pub fn finish(&self, found: &mut Vec<GeomContact>) {
-        if let Some((_, numbers)) = &self.part {
-            for contact in &mut *found {
-                if let Some(number) = usize::try_from(self.side(contact)).ok().and_then(|i| numbers.get(i)) {
-                    self.set_side(contact, *number as c_int);
-                }
-            }
+        for contact in &mut *found {
+            let triangle = self.number(self.side(contact));
+            self.set_side(contact, triangle);
         }
         if self.is_ray() {
             self.choose_hits(found);
-        } else if self.other.class.get() == class::SPHERE && self.mesh.mesh.merge_mode.get() >= MERGE_NORMALS
+        } else if let ([contact], Some(merge)) = (&mut found[..], self.mesh.mesh.names_merged())
+            && self.side(contact) < 0
         {
-            self.merge(found);
+            let name = self.merged_name(merge);
+            self.set_side(contact, name);
         }
+    }
+
+    /// A triangle's number in the whole mesh.
+    fn number(&self, triangle: c_int) -> c_int {
+        let Some((_, numbers)) = &self.part else { return triangle };
+        let number = usize::try_from(triangle).ok().and_then(|i| numbers.get(i));
+        number.map_or(triangle, |number| *number as c_int)
+    }
+
+    /// What the program calls a contact that several triangles make with a ball.
+    fn merged_name(&self, merge: MergeCallback) -> c_int {
+        let mesh = self.part.as_ref().map(|(part, _)| part.clone()).or_else(|| self.whole());
+        let (Some(mesh), Some(ball)) = (mesh, self.other.shape.with(Option::clone)) else { return -1 };
+        let single = Shape::from(mesh.with_sphere_merge(ContactMerge::Normals));
+        let [fm, fb] = &self.frames;
+        let mut each = Vec::new();
+        collide_frames((&single, fm), (&ball, fb), CollideOptions::default(), &mut each);
+        let names = each.iter().map(|contact| self.number(contact.side1));
+        // SAFETY: the program's own function, called as its header says.
+        let two = |a, b| unsafe { merge(GeomId::of(self.mesh), a, b) };
+        names.reduce(two).unwrap_or(-1)
     }
 
     fn choose_hits(&self, found: &mut Vec<GeomContact>) {
@@ -146,7 +167,7 @@ impl MeshChoice {
         found.retain(|contact| {
             let triangle = self.side(contact);
             if let (Some(ray), Some(whole)) = (ray, &whole) {
-                let point = self.frame.point_to_local(contact.point.position);
+                let point = self.frames[0].point_to_local(contact.point.position);
                 let (u, v) = barycentrics(whole, triangle, point);
                 // SAFETY: the program's own function, called as its header says.
                 if unsafe { ray(mesh, other, triangle, r(u), r(v)) } == 0 {
@@ -156,34 +177,6 @@ impl MeshChoice {
             // SAFETY: as above.
             tri.is_none_or(|tri| unsafe { tri(mesh, other, triangle) } != 0)
         });
-    }
-
-    /// Gives all contacts with a ball the mean of their normals, by depth, or makes one contact of them.
-    fn merge(&self, found: &mut Vec<GeomContact>) {
-        let sum = found.iter().fold(Vec3::ZERO, |sum, c| sum + c.point.normal * c.point.depth);
-        let Some(normal) = sum.normalized().filter(|_| found.len() > 1) else { return };
-        let cosine = |c: &GeomContact| normal.dot(c.point.normal);
-        if self.mesh.mesh.merge_mode.get() != MERGE_FULL {
-            found.iter_mut().for_each(|c| c.point.normal = normal);
-            return;
-        }
-        if found.iter().any(|c| cosine(c) < f64::EPSILON) {
-            return;
-        }
-        let middle = found.iter().fold(Vec3::ZERO, |sum, c| sum + c.point.position) / found.len() as f64;
-        let depth = found.iter().map(|c| c.point.depth / cosine(c).max(0.5)).fold(0.0, f64::max);
-        let mut triangle = self.side(&found[0]);
-        for other in &found[1..] {
-            triangle = match self.mesh.mesh.merge.get() {
-                // SAFETY: the program's own function, called as its header says.
-                Some(merge) => unsafe { merge(GeomId::of(self.mesh), triangle, self.side(other)) },
-                None => -1,
-            };
-        }
-        found.truncate(1);
-        let one = &mut found[0];
-        (one.point.position, one.point.normal, one.point.depth) = (middle, normal, depth);
-        self.set_side(&mut found[0], triangle);
     }
 }
 

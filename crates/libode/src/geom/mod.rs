@@ -22,12 +22,15 @@ use core::cell::{Cell, RefCell};
 use core::ffi::{c_int, c_ulong, c_void};
 use ferrode_collide::{Frame, Shape};
 use ferrode_math::{Aabb, Mat3, Vec3};
-use kept::Kept;
+use kept::{Kept, KeptBox, Shown};
 
 pub use classes::forget as forget_classes;
 pub use space::SpaceData;
 
 pub type GeomId = Handle<GeomRecord>;
+
+/// The version of data of which a geom has taken over nothing.
+const NO_BUILD: u64 = u64::MAX;
 
 const LOCKED: Fault = Fault::user("Invalid operation for locked space");
 const NOT_PLACEABLE: Fault = Fault::user("geom must be placeable");
@@ -67,10 +70,9 @@ pub struct GeomRecord {
     disabled: Cell<bool>,
     /// The space that it is in has yet to learn its box. The spaces above a dirty geom are dirty.
     dirty: Cell<bool>,
-    stale: Cell<bool>,
-    aabb: Cell<Option<Aabb>>,
-    position: Cell<Real4>,
-    rotation: Cell<Real12>,
+    aabb: KeptBox,
+    position: Shown<4>,
+    rotation: Shown<12>,
     has_offset: Cell<bool>,
     offset_position: Cell<Real4>,
     offset_rotation: Cell<Real12>,
@@ -105,7 +107,6 @@ impl GeomRecord {
         geom.collide.set(c_ulong::MAX);
         geom.rotation.set(crate::real::matrix3(&Mat3::IDENTITY));
         geom.dirty.set(true);
-        geom.stale.set(true);
         geom.shape.set(shape);
         *geom.contents.borrow_mut() = contents.map(Box::new);
         if let Some(parent) = parent {
@@ -185,18 +186,17 @@ impl GeomRecord {
 
     /// The world box, brought up to date.
     fn current_aabb(&self) -> Aabb {
-        if self.stale.get() || self.aabb.get().is_none() {
+        self.aabb.get().unwrap_or_else(|| {
             let aabb = self.measure();
-            self.aabb.set(Some(aabb));
-            self.stale.set(false);
-        }
-        self.aabb.get().unwrap_or(Aabb::EMPTY)
+            self.aabb.set(&aabb);
+            aabb
+        })
     }
 
     /// The world box, afresh. The program's own function may be asked, so nothing is borrowed meanwhile.
     fn measure(&self) -> Aabb {
         if self.is_space() {
-            let members = self.contents.borrow().as_ref().map(|contents| contents.list()).unwrap_or_default();
+            let members = space::look(self, space::SpaceData::list).unwrap_or_default();
             return space::aabb_of(self.class.get(), &members);
         }
         if let Some([ax, bx, ay, by, az, bz]) = self.user_aabb() {
@@ -240,7 +240,7 @@ impl GeomRecord {
             space.require_unlocked()?;
             above = space.parent();
         }
-        self.stale.set(true);
+        self.aabb.forget();
         let mut dirty = self.dirty.replace(true);
         let mut proxy = self.proxy.get();
         let mut above = self.parent();
@@ -250,7 +250,7 @@ impl GeomRecord {
                 dirty = space.dirty.replace(true);
                 proxy = space.proxy.get();
             }
-            space.stale.set(true);
+            space.aabb.forget();
             above = space.parent();
         }
         Ok(())

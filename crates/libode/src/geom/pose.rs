@@ -8,7 +8,6 @@ use crate::real::{
     quat, quaternion, vec3, vector, vector3,
 };
 use crate::record::Required;
-use core::cell::Cell;
 use core::ffi::c_int;
 use ferrode_collide::Frame;
 use ferrode_math::{Mat3, Quat, Vec3};
@@ -81,18 +80,17 @@ fn copy(mut m: Real12, to: OutMatrix) -> Outcome<()> {
 }
 
 /// Where the pose's numbers are: in the body's record if the geom is just where the body is.
-fn pointer<T>(
+fn pointer(
     geom: GeomId,
-    own: fn(&GeomRecord) -> &Cell<T>,
-    bodys: fn(&crate::record::BodyRecord) -> &Cell<T>,
+    own: fn(&GeomRecord) -> *mut Real,
+    bodys: fn(&crate::record::BodyRecord) -> *mut Real,
 ) -> Outcome<*const Real> {
     let geom = placeable(geom)?;
     geom.frame();
-    let cell = match geom.on_body() {
+    Ok(match geom.on_body() {
         Some(body) if !geom.has_offset.get() => bodys(body),
         _ => own(geom),
-    };
-    Ok(cell.as_ptr().cast_const().cast())
+    })
 }
 
 /// A point or vector by the geom's frame; one without a pose gives it back.
@@ -142,10 +140,10 @@ export! {
         }
     }
     fn dGeomGetPosition(geom: GeomId) -> *const Real {
-        pointer(geom, |geom| &geom.position, |body| &body.position)?
+        pointer(geom, |geom| geom.position.as_ptr(), |body| body.position.as_ptr().cast())?
     }
     fn dGeomGetRotation(geom: GeomId) -> *const Real {
-        pointer(geom, |geom| &geom.rotation, |body| &body.rotation)?
+        pointer(geom, |geom| geom.rotation.as_ptr(), |body| body.rotation.as_ptr().cast())?
     }
     fn dGeomCopyPosition(geom: GeomId, position: OutVector) {
         position.set(vector3(placeable(geom)?.frame().position))?

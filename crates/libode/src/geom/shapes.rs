@@ -201,14 +201,16 @@ export! {
             parent.require_unlocked()?;
         }
         // As in ODE only the direction's column changes, on a body too, whose quaternion stays.
-        let (position, rotation) = match geom.on_body() {
-            Some(body) if !geom.has_offset.get() => (&body.current().position, &body.rotation),
-            _ => (&geom.position, &geom.rotation),
-        };
-        position.set([px, py, pz, 0.0]);
-        let mut m = rotation.get();
+        let body = geom.on_body().filter(|_| !geom.has_offset.get()).map(crate::record::BodyRecord::current);
+        let mut m = body.map_or_else(|| geom.rotation.get(), |body| body.rotation.get());
         (m[2], m[6], m[10]) = (r(direction.x), r(direction.y), r(direction.z));
-        rotation.set(m);
+        if let Some(body) = body {
+            body.position.set([px, py, pz, 0.0]);
+            body.rotation.set(m);
+        } else {
+            geom.position.set([px, py, pz, 0.0]);
+            geom.rotation.set(m);
+        }
         geom.moved()?
     }
     fn dGeomRayGet(geom: GeomId, start: OutVector, direction: OutVector) {

@@ -5,8 +5,8 @@ use crate::fault::{Fault, Outcome, export, export_calling};
 use crate::real::{In, Out, Real, f};
 use crate::record::Required;
 use crate::slab::Link;
-use core::cell::Cell;
 use core::ffi::c_int;
+use core::sync::atomic::{AtomicU64, Ordering};
 use ferrode_collide::space::{
     AxisOrder, BroadPhase, HashSpace, Proxy, ProxyId, ProxyTable, QuadtreeSpace, Scratch, SimpleSpace,
     SweepAndPruneSpace,
@@ -19,6 +19,9 @@ enum Broad {
     SweepAndPrune(SweepAndPruneSpace),
     Quadtree(QuadtreeSpace),
 }
+
+/// A cursor that is nowhere.
+const NOWHERE: u64 = u64::MAX;
 
 /// A geom in a space.
 pub type Member = Link<GeomRecord>;
@@ -33,8 +36,8 @@ pub struct SpaceData {
     scratch: Scratch,
     cleanup: bool,
     sublevel: c_int,
-    /// An index and its member, while the list stays as it is.
-    cursor: Cell<Option<(usize, ProxyId)>>,
+    /// An index in the upper half and its member in the lower, while the list stays as it is. Threads may ask at once.
+    cursor: AtomicU64,
 }
 
 impl SpaceData {
@@ -47,7 +50,7 @@ impl SpaceData {
             scratch: Scratch::default(),
             cleanup: true,
             sublevel: 0,
-            cursor: Cell::new(None),
+            cursor: AtomicU64::new(NOWHERE),
         }
     }
 
@@ -95,21 +98,24 @@ impl SpaceData {
                 .map(|id| member(*id));
         }
         let list = self.broad().members();
-        let (mut place, mut id) = match self.cursor.get() {
-            Some((place, id)) if place <= index => (place, Some(id)),
-            _ => (0, list.first()),
+        let cursor = self.cursor.load(Ordering::Relaxed);
+        let start = (cursor >> 32) as usize;
+        let (mut place, mut id) = if cursor != NOWHERE && start <= index {
+            (start, Some(ProxyId(cursor as u32)))
+        } else {
+            (0, list.first())
         };
         while place < index {
             id = list.after(&self.table, id?);
             place += 1;
         }
-        self.cursor.set(Some((index, id?)));
+        self.cursor.store((index as u64) << 32 | u64::from(id?.0), Ordering::Relaxed);
         id.map(member)
     }
 
     /// A member's box is about to change.
     pub fn moved(&mut self, proxy: u32) {
-        self.cursor.set(None);
+        self.cursor.store(NOWHERE, Ordering::Relaxed);
         let (broad, table, _) = self.parts();
         broad.moved(table, ProxyId(proxy));
     }
@@ -155,6 +161,17 @@ fn with<T>(space: &GeomRecord, work: impl FnOnce(&mut SpaceData) -> T) -> Outcom
     Ok(work(contents.as_mut().ok_or(Fault::user("argument not a space"))?))
 }
 
+/// A look at a space's contents, by several threads at once if they like.
+pub fn look<T>(space: &GeomRecord, work: impl FnOnce(&SpaceData) -> T) -> Outcome<T> {
+    const fn is_sync<T: Sync>() {}
+    const { is_sync::<(Broad, ProxyTable)>() };
+    let not_space = Fault::user("argument not a space");
+    // SAFETY: nobody changes the contents meanwhile: `work` is given nothing to do so with and does not call out, and other
+    // threads must not (the C interface's contract).
+    let contents = unsafe { space.contents.try_borrow_unguarded() }.map_err(|_| not_space)?;
+    Ok(work(contents.as_ref().ok_or(not_space)?))
+}
+
 pub fn add(space: &'static GeomRecord, geom: &'static GeomRecord) -> Outcome<()> {
     space.require_unlocked()?;
     let mut above = Some(space);
@@ -173,14 +190,14 @@ pub fn add(space: &'static GeomRecord, geom: &'static GeomRecord) -> Outcome<()>
         }
         contents.members[number as usize] = Link::to(geom);
         geom.proxy.set(number);
-        contents.cursor.set(None);
+        contents.cursor.store(NOWHERE, Ordering::Relaxed);
         let (broad, table, _) = contents.parts();
         table.set(ProxyId(number), proxy);
         broad.insert(table, ProxyId(number));
     })?;
     geom.space.set(Link::to(space));
     geom.dirty.set(true);
-    geom.stale.set(true);
+    geom.aabb.forget();
     space.moved()
 }
 
@@ -188,7 +205,7 @@ pub fn remove(space: &'static GeomRecord, geom: &'static GeomRecord) -> Outcome<
     space.require_unlocked()?;
     let number = geom.proxy.get();
     with(space, |contents| {
-        contents.cursor.set(None);
+        contents.cursor.store(NOWHERE, Ordering::Relaxed);
         let (broad, table, _) = contents.parts();
         broad.remove(table, ProxyId(number));
         contents.members[number as usize] = Link::NULL;
@@ -371,11 +388,11 @@ export! {
         max.set_if_wanted([levels.1])
     }
     fn dSpaceSetCleanup(space: GeomId, mode: c_int) { with(get(space)?, |contents| contents.cleanup = mode != 0)? }
-    fn dSpaceGetCleanup(space: GeomId) -> c_int { with(get(space)?, |contents| contents.cleanup)?.into() }
+    fn dSpaceGetCleanup(space: GeomId) -> c_int { look(get(space)?, |contents| contents.cleanup)?.into() }
     fn dSpaceSetSublevel(space: GeomId, sublevel: c_int) {
         with(get(space)?, |contents| contents.sublevel = sublevel)?
     }
-    fn dSpaceGetSublevel(space: GeomId) -> c_int { with(get(space)?, |contents| contents.sublevel)? }
+    fn dSpaceGetSublevel(space: GeomId) -> c_int { look(get(space)?, |contents| contents.sublevel)? }
     /// It chooses between caches that this library does not have; the getter says 1, as Debian's.
     fn dSpaceSetManualCleanup(space: GeomId, _mode: c_int) { get(space)?; }
     fn dSpaceGetManualCleanup(space: GeomId) -> c_int { get(space)?; 1 }
@@ -398,11 +415,11 @@ export! {
         geom.get()?.parent().is_some_and(|parent| core::ptr::eq(parent, space)).into()
     }
     fn dSpaceGetNumGeoms(space: GeomId) -> c_int {
-        with(get(space)?, |contents| contents.broad().members().len())? as c_int
+        look(get(space)?, |contents| contents.broad().members().len())? as c_int
     }
     fn dSpaceGetGeom(space: GeomId, index: c_int) -> GeomId {
         let index = usize::try_from(index).map_err(|_| Fault::ARGUMENT)?;
-        with(get(space)?, |contents| contents.member(index))?.ok_or(Fault::ARGUMENT)?.handle()
+        look(get(space)?, |contents| contents.member(index))?.ok_or(Fault::ARGUMENT)?.handle()
     }
     fn dSpaceGetClass(space: GeomId) -> c_int { get(space)?.class.get() }
 }

@@ -9,9 +9,11 @@ use crate::fault::{Fault, Outcome, export, export_unless};
 use crate::mass::{MassPointer, store_checked};
 use crate::real::{In, Out, OutVector, Real, f, vector3};
 use crate::record::{Required, record};
-use crate::slab::{Handle, Pool, Record, Tag};
-use core::cell::{Cell, RefCell};
+use crate::slab::{Handle, Held, Pool, Record, Tag};
+use core::cell::Cell;
 use core::ffi::{c_int, c_uint, c_void};
+use core::sync::atomic::{AtomicU64, Ordering};
+use ferrode_collide::narrow::ContactMerge;
 use ferrode_collide::{Frame, Shape, TriMesh};
 use ferrode_dynamics::Mass;
 use ferrode_math::Vec3;
@@ -41,12 +43,14 @@ pub struct MeshRecord {
     tag: Tag,
     arrays: Cell<Option<Arrays>>,
     mesh: Kept<Option<TriMesh>>,
+    /// An older mesh of the same triangles, whose memory the next update can use.
+    spare: Kept<Option<TriMesh>>,
     /// Counts builds, so that geoms see that theirs is an old one.
-    version: Cell<u64>,
+    version: AtomicU64,
     normals: Cell<*mut c_void>,
-    /// A byte a triangle: edges and vertices to use.
-    flags: RefCell<Vec<u8>>,
-    given_flags: Cell<*mut c_void>,
+    /// A byte a triangle: edges and vertices to use, as preprocessing found them. The program may change them.
+    flags: Cell<Option<*mut [u8]>>,
+    given_flags: Cell<*mut u8>,
     preprocessed: Cell<c_uint>,
 }
 record!(MeshRecord, MESHES, 14);
@@ -55,7 +59,7 @@ record!(MeshRecord, MESHES, 14);
 #[derive(Default)]
 pub struct MeshGeom {
     pub data: Cell<MeshId>,
-    version: Cell<u64>,
+    version: AtomicU64,
     pub tri: Cell<Option<TriCallback>>,
     pub array: Cell<Option<ArrayCallback>>,
     pub ray: Cell<Option<RayCallback>>,
@@ -66,12 +70,25 @@ pub struct MeshGeom {
     pub merge_mode: Cell<c_int>,
 }
 
+impl MeshGeom {
+    /// The program's function that names contacts of several triangles, where there are such contacts.
+    pub fn names_merged(&self) -> Option<MergeCallback> {
+        self.merge.get().filter(|_| self.merge() == ContactMerge::Full)
+    }
+
+    /// How contacts with balls are merged.
+    pub fn merge(&self) -> ContactMerge {
+        match self.merge_mode.get() {
+            2 => ContactMerge::Normals,
+            3 => ContactMerge::Full,
+            _ => ContactMerge::None,
+        }
+    }
+}
+
 impl MeshRecord {
-    /// Reads the arrays and builds the mesh.
-    fn build(&self) -> Outcome<()> {
-        let arrays = self.arrays.get().ok_or(Fault::ARGUMENT)?;
-        let mut vertices = Vec::with_capacity(arrays.vertex_count);
-        for i in 0..arrays.vertex_count {
+    fn vertices(arrays: &Arrays) -> Vec<Vec3> {
+        let vertex = |i: usize| {
             let at = arrays.vertices.wrapping_add(i * arrays.vertex_stride);
             // SAFETY: the program keeps its arrays, as long and strided as it said, until the data are destroyed (the
             // contract of the build functions).
@@ -82,17 +99,44 @@ impl MeshRecord {
                     at.cast::<[f64; 3]>().read_unaligned()
                 }
             };
-            vertices.push(Vec3::from_array(v));
-        }
-        let triangles = (0..arrays.triangle_count).map(|i| {
+            Vec3::from_array(v)
+        };
+        (0..arrays.vertex_count).map(vertex).collect()
+    }
+
+    fn triangles(arrays: &Arrays) -> impl Iterator<Item = [u32; 3]> {
+        (0..arrays.triangle_count).map(|i| {
             let at = arrays.indices.wrapping_add(i * arrays.triangle_stride);
-            // SAFETY: as above.
+            // SAFETY: as in `vertices`.
             unsafe { at.cast::<[u32; 3]>().read_unaligned() }
-        });
-        let mesh = TriMesh::new(vertices, triangles.collect()).map_err(|_| Fault::ARGUMENT)?;
-        self.mesh.set(Some(mesh));
-        self.version.set(self.version.get() + 1);
+        })
+    }
+
+    /// Reads the arrays and builds the mesh.
+    fn build(&self) -> Outcome<()> {
+        let arrays = self.arrays.get().ok_or(Fault::ARGUMENT)?;
+        let mesh = TriMesh::new(Self::vertices(&arrays), Self::triangles(&arrays).collect());
+        let mesh = self.flagged(mesh.map_err(|_| Fault::ARGUMENT)?)?;
+        self.spare.set(None);
+        self.publish(Some(mesh));
         Ok(())
+    }
+
+    /// Reads the vertices anew. What was built before the last build is used again, when geoms have let go of it.
+    fn update(&self) -> Outcome<()> {
+        let arrays = self.arrays.get().ok_or(Fault::ARGUMENT)?;
+        let same = |mesh: &TriMesh| Self::triangles(&arrays).eq(mesh.triangles().iter().copied());
+        let Some(mesh) = self.mesh.with(Option::clone).filter(same) else { return self.build() };
+        let mut next = self.spare.change(Option::take).unwrap_or_else(|| mesh.clone());
+        next.set_vertices(&Self::vertices(&arrays)).map_err(|_| Fault::ARGUMENT)?;
+        self.spare.set(Some(mesh));
+        self.publish(Some(next));
+        Ok(())
+    }
+
+    fn publish(&self, mesh: Option<TriMesh>) {
+        self.mesh.set(mesh);
+        self.version.fetch_add(1, Ordering::Relaxed);
     }
 
     fn start(&self, arrays: Arrays, normals: *const c_void) -> Outcome<()> {
@@ -101,7 +145,7 @@ impl MeshRecord {
         }
         self.arrays.set(Some(arrays));
         self.normals.set(normals.cast_mut());
-        self.flags.borrow_mut().clear();
+        self.free_flags();
         self.given_flags.set(core::ptr::null_mut());
         self.preprocessed.set(0);
         self.build()
@@ -112,12 +156,51 @@ impl MeshRecord {
     }
 
     /// Where the flags are: the program's own, or those of preprocessing.
-    fn flags_pointer(&self) -> *mut c_void {
-        if !self.given_flags.get().is_null() {
-            return self.given_flags.get();
+    fn flags_pointer(&self) -> *mut u8 {
+        let given = self.given_flags.get();
+        if given.is_null() {
+            self.flags.get().map_or(core::ptr::null_mut(), <*mut [u8]>::cast)
+        } else {
+            given
         }
-        let mut flags = self.flags.borrow_mut();
-        if flags.is_empty() { core::ptr::null_mut() } else { flags.as_mut_ptr().cast() }
+    }
+
+    fn free_flags(&self) {
+        if let Some(flags) = self.flags.take() {
+            // SAFETY: from Box::into_raw in `keep_flags`; taken, so given back once.
+            drop(unsafe { Box::from_raw(flags) });
+        }
+    }
+
+    fn keep_flags(&self, flags: Vec<u8>) {
+        self.free_flags();
+        self.flags.set(Some(Box::into_raw(flags.into())));
+    }
+
+    /// A mesh with the edges and vertices to use that the program has given, or preprocessing has found; ODE uses all if
+    /// there are none.
+    fn flagged(&self, mesh: TriMesh) -> Outcome<TriMesh> {
+        let (start, count) = (self.flags_pointer(), mesh.triangles().len());
+        if start.is_null() {
+            return Ok(mesh);
+        }
+        // SAFETY: not null, so a byte a triangle: ours, or the program's (the contract of the functions that give them).
+        let flags = (0..count).map(|i| unsafe { start.add(i).read() }).collect();
+        mesh.with_use_flags(flags).map_err(|_| Fault::ARGUMENT)
+    }
+
+    /// Takes the program's flags, or goes back to those of preprocessing.
+    fn give_flags(&self, flags: *mut u8) -> Outcome<()> {
+        self.given_flags.set(flags);
+        self.refresh_flags()
+    }
+
+    /// Takes over flags that have changed.
+    fn refresh_flags(&self) -> Outcome<()> {
+        self.spare.set(None);
+        let mesh = self.mesh.with(Option::clone);
+        self.publish(mesh.map(|mesh| self.flagged(mesh)).transpose()?);
+        Ok(())
     }
 }
 
@@ -171,9 +254,17 @@ impl GeomRecord {
             return;
         }
         let Some(data) = self.mesh.data.get().live() else { return };
-        if self.mesh.version.get() != data.version.get() {
-            self.mesh.version.set(data.version.get());
-            self.shape.set(data.mesh.with(Option::clone).map(Shape::from));
+        let version = data.version.load(Ordering::Relaxed);
+        if self.mesh.version.load(Ordering::Acquire) == version {
+            return;
+        }
+        // The first of several threads that find a new build takes it over.
+        let _held = Held::content(self);
+        if self.mesh.version.load(Ordering::Acquire) != version {
+            let merge = self.mesh.merge();
+            let mesh = data.mesh.with(Option::clone).map(|mesh| mesh.with_sphere_merge(merge));
+            self.shape.set(mesh.map(Shape::from));
+            self.mesh.version.store(version, Ordering::Release);
         }
     }
 
@@ -240,7 +331,8 @@ fn preprocess(data: MeshId, requests: c_uint) -> Outcome<c_int> {
     data.preprocessed.set(data.preprocessed.get() | requests);
     if requests & 1 != 0 {
         let flags = data.mesh.with(|mesh| mesh.as_ref().map(use_flags)).unwrap_or_default();
-        *data.flags.borrow_mut() = flags;
+        data.keep_flags(flags);
+        data.refresh_flags()?;
     }
     Ok(1)
 }
@@ -264,7 +356,8 @@ export_unless! { "no-trimesh";
     fn dGeomTriMeshDataDestroy(data: MeshId) {
         let data = data.get()?;
         data.mesh.set(None);
-        *data.flags.borrow_mut() = Vec::new();
+        data.spare.set(None);
+        data.free_flags();
         MeshRecord::pool().destroy(data)
     }
     fn dGeomTriMeshDataBuildSingle(
@@ -308,7 +401,7 @@ export_unless! { "no-trimesh";
     ) {
         data.get()?.start(simple(vertices, vertex_count, indices, index_count)?, normals.cast())?
     }
-    fn dGeomTriMeshDataUpdate(data: MeshId) { data.get()?.build()? }
+    fn dGeomTriMeshDataUpdate(data: MeshId) { data.get()?.update()? }
     fn dGeomTriMeshDataPreprocess(data: MeshId) -> c_int { preprocess(data, 1)? }
     /// Angles need no preparation here: the mesh knows what lies beyond each edge.
     fn dGeomTriMeshDataPreprocess2(data: MeshId, requests: c_uint, _extra: *const isize) -> c_int {
@@ -318,7 +411,7 @@ export_unless! { "no-trimesh";
         let data = data.get()?;
         match id {
             0 => data.normals.set(content),
-            1 => data.given_flags.set(content),
+            1 => data.give_flags(content.cast())?,
             _ => return Err(Fault::user("invalid data type")),
         }
     }
@@ -326,7 +419,7 @@ export_unless! { "no-trimesh";
         let data = data.get()?;
         let (pointer, bytes) = match id {
             0 => (data.normals.get(), data.triangle_count() * 3 * size_of::<Real>()),
-            1 => (data.flags_pointer(), data.triangle_count()),
+            1 => (data.flags_pointer().cast(), data.triangle_count()),
             _ => return Err(Fault::user("invalid data type")),
         };
         size.set_if_wanted([if pointer.is_null() { 0 } else { bytes }]);
@@ -337,17 +430,17 @@ export_unless! { "no-trimesh";
         let data = data.get()?;
         match id {
             0 => data.normals.get(),
-            1 => data.flags_pointer(),
+            1 => data.flags_pointer().cast(),
             _ => return Err(Fault::user("invalid data type")),
         }
     }
     fn dGeomTriMeshDataGetBuffer(data: MeshId, buffer: Out<*mut u8>, length: Out<c_int>) {
         let data = data.get()?;
         let pointer = data.flags_pointer();
-        buffer.set_if_wanted([pointer.cast()]);
+        buffer.set_if_wanted([pointer]);
         length.set_if_wanted([if pointer.is_null() { 0 } else { data.triangle_count() as c_int }])
     }
-    fn dGeomTriMeshDataSetBuffer(data: MeshId, buffer: *mut u8) { data.get()?.given_flags.set(buffer.cast()) }
+    fn dGeomTriMeshDataSetBuffer(data: MeshId, buffer: *mut u8) { data.get()?.give_flags(buffer)? }
 
     fn dCreateTriMesh(
         space: GeomId, data: MeshId, tri: Option<TriCallback>, array: Option<ArrayCallback>, ray: Option<RayCallback>,
@@ -368,7 +461,7 @@ export_unless! { "no-trimesh";
         let geom = mesh_geom(geom)?;
         data.get()?;
         geom.mesh.data.set(data);
-        geom.mesh.version.set(0);
+        geom.mesh.version.store(super::NO_BUILD, Ordering::Release);
         geom.refresh_mesh();
         geom.moved()?
     }
@@ -453,8 +546,10 @@ export! {
         match code {
             // SAFETY: not null, and as large as the caller says (the function's contract).
             1 => match unsafe { value.read() } {
-                0 => geom.mesh.merge_mode.set(0),
-                mode @ 1..=3 => geom.mesh.merge_mode.set(mode),
+                mode @ 0..=3 => {
+                    geom.mesh.merge_mode.set(mode);
+                    geom.mesh.version.store(super::NO_BUILD, Ordering::Release);
+                }
                 _ => return Err(Fault::ARGUMENT),
             },
             // SAFETY: as above.

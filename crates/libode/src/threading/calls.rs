@@ -95,18 +95,18 @@ impl Calls {
         }
     }
 
-    /// Posts a call that waits for so many others.
-    pub fn post(&self, call: Call, dependencies: usize) -> CallId {
+    /// Posts a call that waits for so many others. `tell` gets to know it before it can run, and must not call out.
+    pub fn post(&self, call: Call, dependencies: usize, tell: impl FnOnce(CallId)) {
         let mut state = self.lock();
         let record = CallRecord::pool().create();
         record.pending.set(dependencies as isize);
         record.call.set(Some(call));
         let handle = CallId::of(record);
+        tell(handle);
         if dependencies == 0 {
             state.ready.push_back(handle);
             self.changed.notify_all();
         }
-        handle
     }
 
     /// Changes what a call waits for.

@@ -139,12 +139,12 @@ unsafe extern "C-unwind" fn post_call(
         let (dependent, wait): (CallId, WaitId) = (handle(dependent), handle(wait));
         let calls = calls(implementation)?;
         let call = Call { function, context, instance, dependent, wait, fault };
-        // The releasee is told before the call may run when it still waits for others, which is when posters need it.
-        let posted = calls.post(call, dependencies);
-        if !releasee.is_null() {
-            // SAFETY: not null, so room for a handle (the function's contract).
-            unsafe { releasee.write(pointer(posted)) };
-        }
+        calls.post(call, dependencies, |posted| {
+            if !releasee.is_null() {
+                // SAFETY: not null, so room for a handle (the function's contract).
+                unsafe { releasee.write(pointer(posted)) };
+            }
+        });
         Ok(())
     });
 }

@@ -5,6 +5,20 @@
 #include <cstdlib>
 #include <thread>
 
+/* A world, and geoms whose collisions need memory of the thread's. */
+static dWorldID late_world;
+static dGeomID late_geoms[5];
+
+static void touch_all(const char *when) {
+    dContactGeom c[8];
+    for (int i = 0; i < 5; i++)
+        for (int j = i + 1; j < 5; j++)
+            if (dCollide(late_geoms[i], late_geoms[j], 8, c, sizeof *c) <= 0) printf("%d and %d miss\n", i, j);
+    dWorldStep(late_world, 0.01);
+    dWorldQuickStep(late_world, 0.01);
+    printf("%s\n", when);
+}
+
 struct Guard {
     dGeomID a, b;
     dSpaceID space;
@@ -13,6 +27,7 @@ struct Guard {
         dContactGeom c[4];
         dInitODE2(0);
         printf("late contacts %d\n", dCollide(a, b, 4, c, sizeof *c));
+        touch_all("late all");
         dSpaceCollide(space, 0, [](void *, dGeomID, dGeomID) { puts("late pair"); });
         dCloseODE();
         dGeomDestroy(a);
@@ -37,6 +52,26 @@ int main() {
     guard.a = dCreateSphere(guard.space, 1);
     guard.b = dCreateBox(guard.space, 1, 1, 1);
     atexit(at_exit);
+    static float heights[4][4];
+    static dReal points[] = {0.5, 0, -0.4, -0.3, 0.5, -0.4, -0.3, -0.5, -0.4, 0, 0, 0.5};
+    static unsigned faces[] = {3, 0, 2, 1, 3, 0, 1, 3, 3, 1, 2, 3, 3, 2, 0, 3};
+    dHeightfieldDataID field = dGeomHeightfieldDataCreate();
+    dGeomHeightfieldDataBuildSingle(field, &heights[0][0], 0, 4, 4, 4, 4, 1, 0.1, 1, 0);
+    late_geoms[0] = dCreateHeightfield(0, field, 1);
+    dMatrix3 up;
+    dRFromAxisAndAngle(up, 1, 0, 0, M_PI / 2);
+    dGeomSetRotation(late_geoms[0], up);
+    late_geoms[1] = dCreateConvex(0, 0, 4, points, 4, faces);
+    late_geoms[2] = dCreateCylinder(0, 0.3, 0.5);
+    late_geoms[3] = dCreateBox(0, 0.5, 0.6, 0.7);
+    late_geoms[4] = dCreateCapsule(0, 0.3, 0.5);
+    late_world = dWorldCreate();
+    for (int i = 0; i < 200; i++) {
+        dBodyID one = dBodyCreate(late_world), other = dBodyCreate(late_world);
+        dBodySetPosition(one, i, 0, 0);
+        dJointAttach(dJointCreateBall(late_world, 0), one, other);
+    }
+    touch_all("early all");
     world_wrapper = new dWorld;
     body_wrapper = new dBody(*world_wrapper);
     dJointID joint = dJointCreateBall(*world_wrapper, group_wrapper);
