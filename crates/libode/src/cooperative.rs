@@ -46,6 +46,14 @@ impl Requirements {
     }
 }
 
+/// Destroying nothing is allowed.
+fn destroy<T: Record>(handle: Handle<T>) -> Outcome<()> {
+    if !handle.is_null() {
+        T::pool().destroy(handle.get()?);
+    }
+    Ok(())
+}
+
 fn estimate(requirements: RequirementsId, threads: c_uint, rows: c_uint) -> Outcome<()> {
     requirements.get()?.merge(unsigned(threads), unsigned(rows));
     Ok(())
@@ -61,7 +69,7 @@ export! {
     fn dCooperativeCreate(_functions: In<FunctionsInfo>, _implementation: ImplementationId) -> CooperativeId {
         CooperativeId::of(Cooperative::pool().create())
     }
-    fn dCooperativeDestroy(cooperative: CooperativeId) { Cooperative::pool().destroy(cooperative.get()?) }
+    fn dCooperativeDestroy(cooperative: CooperativeId) { destroy(cooperative)? }
 
     fn dResourceRequirementsCreate(cooperative: CooperativeId) -> RequirementsId {
         cooperative.get()?;
@@ -69,9 +77,7 @@ export! {
         requirements.cooperative.set(cooperative);
         RequirementsId::of(requirements)
     }
-    fn dResourceRequirementsDestroy(requirements: RequirementsId) {
-        Requirements::pool().destroy(requirements.get()?)
-    }
+    fn dResourceRequirementsDestroy(requirements: RequirementsId) { destroy(requirements)? }
     fn dResourceRequirementsClone(requirements: RequirementsId) -> RequirementsId {
         let original = requirements.get()?;
         let clone = Requirements::pool().create();
@@ -89,7 +95,7 @@ export! {
         resources.rows.set(rows);
         ResourcesId::of(resources)
     }
-    fn dResourceContainerDestroy(resources: ResourcesId) { Resources::pool().destroy(resources.get()?) }
+    fn dResourceContainerDestroy(resources: ResourcesId) { destroy(resources)? }
 
     fn dEstimateCooperativelyFactorLDLTResourceRequirements(
         requirements: RequirementsId, threads: c_uint, rows: c_uint,

@@ -51,6 +51,9 @@ pub fn from_engine(error: &Error) -> Outcome<()> {
         Error::WrongMode { what } if what.starts_with("transmission axes 1 and 2") => {
             Fault::user("can't set individual axes in current mode")
         }
+        Error::WrongMode { what } if what.starts_with("transmission radii") => {
+            Fault::user("can't set wheel radius explicitly in current mode")
+        }
         Error::WrongMode { what } => Fault::user(what),
         Error::OutOfRange { what: "transmission ratio", .. } => Fault::user("ratio must be positive"),
         Error::OutOfRange { expected: "a positive number", .. } => Fault::user("value must be positive"),

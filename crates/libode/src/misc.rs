@@ -59,10 +59,10 @@ export! {
     }
 
     fn dPrintMatrix(a: *const Real, n: c_int, m: c_int, format: *const c_char, file: *mut File) {
-        if a.is_null() || format.is_null() || file.is_null() {
+        let (n, m) = (n.max(0) as usize, m.max(0) as usize);
+        if n > 0 && (file.is_null() || m > 0 && (a.is_null() || format.is_null())) {
             return Err(Fault::ARGUMENT);
         }
-        let (n, m) = (n.max(0) as usize, m.max(0) as usize);
         for i in 0..n {
             for j in 0..m {
                 // SAFETY: within the n x m matrix that the program gives (the function's contract).

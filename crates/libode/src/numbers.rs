@@ -72,6 +72,9 @@ pub use kind::{Numbers, NumbersMut};
 /// # Safety
 /// `a` is null or good for `n` numbers that nobody changes meanwhile.
 pub unsafe fn read<'a>(a: *const Real, n: usize) -> Outcome<Numbers<'a>> {
+    if n == 0 {
+        return Ok(kind::read(&[]));
+    }
     if a.is_null() {
         return Err(Fault::ARGUMENT);
     }
@@ -84,6 +87,9 @@ pub unsafe fn read<'a>(a: *const Real, n: usize) -> Outcome<Numbers<'a>> {
 /// # Safety
 /// `a` is null or good for `n` numbers that nobody else uses meanwhile.
 pub unsafe fn change<'a>(a: *mut Real, n: usize) -> Outcome<NumbersMut<'a>> {
+    if n == 0 {
+        return Ok(kind::change(&mut []));
+    }
     if a.is_null() {
         return Err(Fault::ARGUMENT);
     }

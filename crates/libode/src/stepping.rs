@@ -229,8 +229,13 @@ pub fn listen(world: &WorldRecord, joint: JointId, on: bool) {
     }
 }
 
+/// The world, or libode's words for a bad one.
+fn known(world: WorldId) -> Outcome<&'static WorldRecord> {
+    world.get().map_err(|_| Fault::user("bad world argument"))
+}
+
 pub fn step_on(world: WorldId, method: Method, stepsize: Real) -> Outcome<c_int> {
-    crate::threading::run_step(world.get()?, method, stepsize)
+    crate::threading::run_step(known(world)?, method, stepsize)
 }
 
 /// One step by the exact solver.
@@ -282,7 +287,7 @@ export! {
         limits.set([given])?
     }
     fn dWorldSetStepMemoryReservationPolicy(world: WorldId, policy: In<ReserveInfo>) -> c_int {
-        let world = world.get()?;
+        let world = known(world)?;
         let policy = policy.optional().map(|[policy]| policy);
         if policy.is_some_and(|p| p.struct_size as usize != size_of::<ReserveInfo>() || p.reserve_factor < 1.0) {
             return Err(Fault::user("Bad policy info"));
@@ -297,15 +302,15 @@ export! {
         if functions.is_some_and(|f| (f.struct_size as usize) < size_of::<FunctionsInfo>()) {
             return Err(Fault::user("Bad threading functions info"));
         }
-        world.get()?.settings.threading.set(functions.map(|functions| (functions, implementation)))
+        known(world)?.settings.threading.set(functions.map(|functions| (functions, implementation)))
     }
 }
 
 export_calling! {
-    fn dWorldCleanupWorkingMemory(world: WorldId) { world.get()?.settings.free_step_memory() }
+    fn dWorldCleanupWorkingMemory(world: WorldId) { known(world)?.settings.free_step_memory() }
     /// A world's working memory stays its own; with another's it takes over that one's manager and reserve.
     fn dWorldUseSharedWorkingMemory(world: WorldId, from: WorldId) -> c_int {
-        let world = world.get()?;
+        let world = known(world)?;
         let from = if from.is_null() { None } else { Some(&from.get()?.settings) };
         world.settings.free_step_memory();
         world.settings.manager.set(from.and_then(|from| from.manager.get()));
@@ -313,7 +318,7 @@ export_calling! {
         1
     }
     fn dWorldSetStepMemoryManager(world: WorldId, functions: In<MemoryFunctions>) -> c_int {
-        let world = world.get()?;
+        let world = known(world)?;
         let functions = functions.optional().map(|[functions]| functions);
         if functions.is_some_and(|m| m.struct_size as usize != size_of::<MemoryFunctions>()
             || m.alloc_block.is_none() || m.free_block.is_none()) {

@@ -50,9 +50,15 @@ impl Neighbour {
     /// What a triangle with the given normal has beyond its edge from `start` to `end`: a triangle with the third corner
     /// `apex` and the normal `other`.
     pub(crate) fn across(start: Vec3, end: Vec3, apex: Vec3, normal: Vec3, other: Vec3) -> Self {
-        let along = (end - start).normalized_or(Vec3::X);
-        let across = (apex - start) - along * along.dot(apex - start);
-        if normal.dot(across) < -FLAT * across.length() { Self::Convex(other) } else { Self::FlatOrConcave }
+        let (along, to_apex) = (end - start, apex - start);
+        let rise = normal.dot(to_apex);
+        // The apex is |along x to_apex| / |along| from the edge.
+        let least = FLAT * FLAT * along.cross(to_apex).length_squared();
+        if rise < 0.0 && rise * rise * along.length_squared() > least {
+            Self::Convex(other)
+        } else {
+            Self::FlatOrConcave
+        }
     }
 }
 
@@ -238,8 +244,11 @@ fn normal_of([a, b, c]: [Vec3; 3]) -> Vec3 {
     if n.length() > 1e-14 * e.length() * f.length() { n.normalized_or(Vec3::ZERO) } else { Vec3::ZERO }
 }
 
-/// The number of each vertex's place, and all edges, those with the same ends side by side: (ends, triangle, edge).
-fn edges_by_ends(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u32, u32, u32, u8)>) {
+/// An edge: its ends, the triangle, and which of its edges it is.
+type Edge = (u32, u32, u32, u8);
+
+/// The number of each vertex's place, and all edges, those with the same ends side by side.
+fn edges_by_ends(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<Edge>) {
     let mut numbers = BTreeMap::new();
     let place_of: Vec<u32> = vertices
         .iter()
@@ -248,7 +257,7 @@ fn edges_by_ends(vertices: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u
             *numbers.entry(place(p)).or_insert(next)
         })
         .collect();
-    let mut edges: Vec<(u32, u32, u32, u8)> = Vec::with_capacity(3 * triangles.len());
+    let mut edges: Vec<Edge> = Vec::with_capacity(3 * triangles.len());
     for (i, t) in triangles.iter().enumerate() {
         for e in 0..3 {
             let (a, b) = (place_of[t[e] as usize], place_of[t[(e + 1) % 3] as usize]);

@@ -1,6 +1,6 @@
 //! Classes of the program's own, overridden colliders, and the old wrapper that moves another geom.
 
-use super::{GeomId, GeomRecord, class};
+use super::{GeomId, GeomRecord, class, of_class};
 use crate::contact::ContactGeomRecord;
 use crate::fault::{Fault, Outcome, export, export_calling};
 use crate::real::{In, Real};
@@ -151,16 +151,14 @@ pub fn collider(a: c_int, b: c_int) -> Option<(Collider, bool)> {
 }
 
 fn transform(geom: GeomId) -> Outcome<&'static GeomRecord> {
-    let geom = geom.get()?;
-    geom.require_class(class::TRANSFORM, "argument not a geom transform")?;
-    Ok(geom)
+    of_class(geom, class::TRANSFORM, "argument not a geom transform")
 }
 
 export! {
     fn dCreateGeomClass(description: In<ClassRecord>) -> c_int {
         let [description] = description.get()?;
         if description.bytes < 0 || description.collider.is_none() || description.aabb.is_none() {
-            return Err(Fault::ARGUMENT);
+            return Err(Fault::user("bad geom class"));
         }
         registry(|registry| {
             if registry.classes.len() == USERS {
@@ -178,8 +176,8 @@ export! {
         handle
     }
     fn dGeomGetClassData(geom: GeomId) -> *mut c_void {
-        let geom = geom.get()?;
-        class_of(geom.class.get()).ok_or(Fault::user("not a custom class"))?;
+        let custom = |geom: &&GeomRecord| class_of(geom.class.get()).is_some();
+        let geom = geom.live().filter(custom).ok_or(Fault::user("not a custom class"))?;
         geom.own.block.get().map_or(core::ptr::null_mut(), <*mut [u128]>::cast)
     }
     fn dSetColliderOverride(i: c_int, j: c_int, collider: Option<Collider>) {

@@ -261,14 +261,17 @@ pub unsafe extern "C-unwind" fn dCollide(
         if flags & 0xffff == 0 {
             return Err(Fault::user("no contacts requested"));
         }
-        let skip = usize::try_from(skip).ok().filter(|skip| *skip >= size_of::<ContactGeomRecord>());
-        let skip = skip.ok_or(Fault::internal("assertion \"skip >= sizeof(dContactGeom)\" failed"))?;
         if contact.is_null() {
             return Err(Fault::ARGUMENT);
         }
         if !crate::init::is_started() {
             return Err(Fault::user("dInitODE2 must be called first"));
         }
+        if core::ptr::eq(a, b) {
+            return Ok(0);
+        }
+        let skip = usize::try_from(skip).ok().filter(|skip| *skip >= size_of::<ContactGeomRecord>());
+        let skip = skip.ok_or(Fault::internal("assertion \"skip >= sizeof(dContactGeom)\" failed"))?;
         Ok(collide(a, b, flags, Target { first: contact, skip }, 0)? as c_int)
     })
 }

@@ -1,7 +1,7 @@
 //! Convex polyhedra by the program's arrays, which stay its own: what it changes there counts from the next collision on.
 
 use super::kept::Kept;
-use super::{GeomId, GeomRecord, class};
+use super::{GeomId, GeomRecord, class, of_class};
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{Real, vec3};
 use crate::record::Required;
@@ -130,8 +130,7 @@ export! {
         geom: GeomId, _planes: *const Real, plane_count: c_uint, points: *const Real, point_count: c_uint,
         polygons: *const c_uint,
     ) {
-        let geom = geom.get()?;
-        geom.require_class(class::CONVEX, "argument not a convex shape")?;
+        let geom = of_class(geom, class::CONVEX, "argument not a convex shape")?;
         let arrays = arrays(points, point_count, polygons, plane_count)?;
         super::shapes::reshape_to(geom, arrays.shape()?)?;
         geom.keep(arrays)

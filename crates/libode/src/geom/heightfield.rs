@@ -3,7 +3,7 @@
 //! As in ODE the program's arrays and functions are asked at each collision, for the samples around the other geom only;
 //! samples that it wants copied are read once.
 
-use super::{GeomId, GeomRecord, class};
+use super::{GeomId, GeomRecord, class, of_class};
 use crate::fault::{Fault, Outcome, export};
 use crate::geom::kept::Kept;
 use crate::real::{Real, f};
@@ -310,9 +310,11 @@ impl GeomRecord {
 }
 
 fn field_geom(geom: GeomId) -> Outcome<&'static GeomRecord> {
-    let geom = geom.get()?;
-    geom.require_class(class::HEIGHTFIELD, "argument not a heightfield")?;
-    Ok(geom)
+    of_class(geom, class::HEIGHTFIELD, "argument not a heightfield")
+}
+
+fn required(data: FieldId) -> Outcome<&'static FieldRecord> {
+    data.get().map_err(|_| Fault::user("argument not Heightfield data"))
 }
 
 macro_rules! builders {
@@ -323,8 +325,9 @@ macro_rules! builders {
                 data: FieldId, samples: *const $sample, copy: c_int, width: Real, depth: Real, columns: c_int,
                 rows: c_int, scale: Real, offset: Real, thickness: Real, wrap: c_int,
             ) {
+                let data = required(data)?;
                 let grid = Grid::new((width, depth), (columns, rows), (scale, offset, thickness), wrap)?;
-                data.get()?.build(grid, Samples::$samples(samples), copy != 0)?
+                data.build(grid, Samples::$samples(samples), copy != 0)?
             }
         )+ }
     };
@@ -340,7 +343,7 @@ builders! {
 export! {
     fn dGeomHeightfieldDataCreate() -> FieldId { FieldId::of(FieldRecord::pool().create()) }
     fn dGeomHeightfieldDataDestroy(data: FieldId) {
-        let data = data.get()?;
+        let data = required(data)?;
         data.field.set(None);
         FieldRecord::pool().destroy(data)
     }
@@ -349,13 +352,19 @@ export! {
         data: FieldId, user: *mut c_void, callback: Option<GetHeight>, width: Real, depth: Real, columns: c_int,
         rows: c_int, scale: Real, offset: Real, thickness: Real, wrap: c_int,
     ) {
+        let data = required(data)?;
         let callback = callback.ok_or(Fault::ARGUMENT)?;
         let grid = Grid::new((width, depth), (columns, rows), (scale, offset, thickness), wrap)?;
-        data.get()?.build(grid, Samples::Function(callback, user), false)?
+        data.build(grid, Samples::Function(callback, user), false)?
     }
-    fn dGeomHeightfieldDataSetBounds(data: FieldId, low: Real, high: Real) { data.get()?.set_bounds(f(low), f(high)) }
+    fn dGeomHeightfieldDataSetBounds(data: FieldId, low: Real, high: Real) {
+        required(data)?.set_bounds(f(low), f(high))
+    }
+    /// Data may come later.
     fn dCreateHeightfield(space: GeomId, data: FieldId, placeable: c_int) -> GeomId {
-        data.get()?;
+        if !data.is_null() {
+            data.get()?;
+        }
         let handle = GeomRecord::create(class::HEIGHTFIELD, None, None, space)?;
         let geom = handle.get()?;
         geom.field.data.set(data);

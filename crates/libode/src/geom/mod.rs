@@ -139,10 +139,6 @@ impl GeomRecord {
         if self.is_placeable() { Ok(()) } else { Err(NOT_PLACEABLE) }
     }
 
-    fn require_class(&self, class: c_int, fault: &'static str) -> Outcome<()> {
-        if self.class.get() == class { Ok(()) } else { Err(Fault::user(fault)) }
-    }
-
     fn on_body(&self) -> Option<&'static BodyRecord> {
         self.body.get().live()
     }
@@ -314,6 +310,11 @@ impl GeomRecord {
         GEOMS.destroy(self);
         Ok(())
     }
+}
+
+/// The geom behind a handle if it is of a class, or the class's own fault.
+fn of_class(geom: GeomId, class: c_int, fault: &'static str) -> Outcome<&'static GeomRecord> {
+    geom.live().filter(|geom| geom.class.get() == class).ok_or(Fault::user(fault))
 }
 
 /// Tells all geoms of a body that it has moved.

@@ -187,23 +187,24 @@ export! {
             geom.moved()?;
         }
     }
-    fn dGeomIsOffset(geom: GeomId) -> c_int { placeable(geom)?.has_offset.get().into() }
+    /// Also of a geom that has no place, as for the getters of offsets: there is none.
+    fn dGeomIsOffset(geom: GeomId) -> c_int { geom.get()?.has_offset.get().into() }
     fn dGeomGetOffsetPosition(geom: GeomId) -> *const Real {
-        let geom = placeable(geom)?;
+        let geom = geom.get()?;
         if geom.has_offset.get() { geom.offset_position.as_ptr().cast_const().cast() } else { NO_OFFSET.as_ptr() }
     }
     fn dGeomGetOffsetRotation(geom: GeomId) -> *const Real {
-        let geom = placeable(geom)?;
+        let geom = geom.get()?;
         if geom.has_offset.get() { geom.offset_rotation.as_ptr().cast_const().cast() } else { NO_TURN.as_ptr() }
     }
     fn dGeomCopyOffsetPosition(geom: GeomId, position: OutVector) {
-        position.set(vector3(vector(&offset_position(placeable(geom)?))))?
+        position.set(vector3(vector(&offset_position(geom.get()?))))?
     }
     fn dGeomCopyOffsetRotation(geom: GeomId, rotation: OutMatrix) {
-        copy(offset_rotation(placeable(geom)?), rotation)?
+        copy(offset_rotation(geom.get()?), rotation)?
     }
     fn dGeomGetOffsetQuaternion(geom: GeomId, q: OutQuaternion) {
-        q.set(quaternion(Quat::from_matrix(&mat3(&offset_rotation(placeable(geom)?)))))?
+        q.set(quaternion(Quat::from_matrix(&mat3(&offset_rotation(geom.get()?)))))?
     }
 
     fn dGeomGetRelPointPos(geom: GeomId, x: Real, y: Real, z: Real, result: OutVector) {

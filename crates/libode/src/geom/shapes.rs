@@ -1,9 +1,8 @@
 //! Geoms by shape: making them, their sizes, depths of points.
 
-use super::{GeomId, GeomRecord, class};
+use super::{GeomId, GeomRecord, class, of_class};
 use crate::fault::{Fault, Outcome, export};
 use crate::real::{Out, OutVector, Real, f, r, vec3, vector3};
-use crate::record::Required;
 use core::ffi::c_int;
 use ferrode_collide::{Capsule, Cuboid, Cylinder, Plane, Ray, Shape, ShapeError, Sphere, point_depth};
 use ferrode_math::Vec3;
@@ -14,12 +13,6 @@ fn made<S: Into<Shape>>(shape: Result<S, ShapeError>) -> Outcome<Shape> {
 
 fn create<S: Into<Shape>>(class: c_int, space: GeomId, shape: Result<S, ShapeError>) -> Outcome<GeomId> {
     GeomRecord::create(class, Some(made(shape)?), None, space)
-}
-
-fn of_class(geom: GeomId, class: c_int, fault: &'static str) -> Outcome<&'static GeomRecord> {
-    let geom = geom.get()?;
-    geom.require_class(class, fault)?;
-    Ok(geom)
 }
 
 /// Gives a geom another shape of its class.

@@ -352,9 +352,11 @@ fn get(space: GeomId) -> Outcome<&'static GeomRecord> {
 
 fn hash<T>(space: GeomId, work: impl FnOnce(&mut HashSpace) -> T) -> Outcome<T> {
     let not_hash = Fault::user("argument must be a hash space");
-    with(get(space)?, |contents| match &mut contents.broad {
-        Broad::Hash(broad) => Ok(work(broad)),
-        _ => Err(not_hash),
+    with(get(space).map_err(|fault| if space.is_null() { fault } else { not_hash })?, |contents| {
+        match &mut contents.broad {
+            Broad::Hash(broad) => Ok(work(broad)),
+            _ => Err(not_hash),
+        }
     })?
 }
 
@@ -418,8 +420,10 @@ export! {
         look(get(space)?, |contents| contents.broad().members().len())? as c_int
     }
     fn dSpaceGetGeom(space: GeomId, index: c_int) -> GeomId {
-        let index = usize::try_from(index).map_err(|_| Fault::ARGUMENT)?;
-        look(get(space)?, |contents| contents.member(index))?.ok_or(Fault::ARGUMENT)?.handle()
+        let space = get(space)?;
+        let outside = Fault::user("index out of range");
+        let index = usize::try_from(index).map_err(|_| outside)?;
+        look(space, |contents| contents.member(index))?.ok_or(outside)?.handle()
     }
     fn dSpaceGetClass(space: GeomId) -> c_int { get(space)?.class.get() }
 }

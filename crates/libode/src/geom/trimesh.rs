@@ -4,7 +4,7 @@
 //! changed them.
 
 use super::kept::Kept;
-use super::{GeomId, GeomRecord, class};
+use super::{GeomId, GeomRecord, class, of_class};
 use crate::fault::{Fault, Outcome, export, export_unless};
 use crate::mass::{MassPointer, store_checked};
 use crate::real::{In, Out, OutVector, Real, f, vector3};
@@ -278,9 +278,12 @@ impl GeomRecord {
 }
 
 fn mesh_geom(geom: GeomId) -> Outcome<&'static GeomRecord> {
-    let geom = geom.get()?;
-    geom.require_class(class::TRIMESH, "argument not a trimesh")?;
-    Ok(geom)
+    of_class(geom, class::TRIMESH, "The argument is not a trimesh")
+}
+
+/// As [`mesh_geom`], in the words of the functions of the last transform.
+fn moving(geom: GeomId) -> Outcome<&'static GeomRecord> {
+    of_class(geom, class::TRIMESH, "The geom is not a trimesh")
 }
 
 /// A triangle's corners in the world.
@@ -323,8 +326,12 @@ fn simple(
     arrays(vertices.cast(), single, stride, count, indices.cast(), index_count, 12)
 }
 
+fn required(data: MeshId) -> Outcome<&'static MeshRecord> {
+    data.get().map_err(|_| Fault::user("The argument is not a trimesh data"))
+}
+
 fn preprocess(data: MeshId, requests: c_uint) -> Outcome<c_int> {
-    let data = data.get()?;
+    let data = required(data)?;
     if data.preprocessed.get() & requests != 0 {
         return Err(Fault::user("Repeated preprocessing has been requested"));
     }
@@ -354,18 +361,20 @@ fn coherent_class(geom_class: c_int) -> Option<usize> {
 export_unless! { "no-trimesh";
     fn dGeomTriMeshDataCreate() -> MeshId { MeshId::of(MeshRecord::pool().create()) }
     fn dGeomTriMeshDataDestroy(data: MeshId) {
-        let data = data.get()?;
-        data.mesh.set(None);
-        data.spare.set(None);
-        data.free_flags();
-        MeshRecord::pool().destroy(data)
+        if !data.is_null() {
+            let data = required(data)?;
+            data.mesh.set(None);
+            data.spare.set(None);
+            data.free_flags();
+            MeshRecord::pool().destroy(data);
+        }
     }
     fn dGeomTriMeshDataBuildSingle(
         data: MeshId, vertices: *const c_void, vertex_stride: c_int, vertex_count: c_int, indices: *const c_void,
         index_count: c_int, tri_stride: c_int,
     ) {
         let arrays = arrays(vertices, true, vertex_stride, vertex_count, indices, index_count, tri_stride)?;
-        data.get()?.start(arrays, core::ptr::null())?
+        required(data)?.start(arrays, core::ptr::null())?
     }
     #[allow(clippy::too_many_arguments)]
     fn dGeomTriMeshDataBuildSingle1(
@@ -373,14 +382,14 @@ export_unless! { "no-trimesh";
         index_count: c_int, tri_stride: c_int, normals: *const c_void,
     ) {
         let arrays = arrays(vertices, true, vertex_stride, vertex_count, indices, index_count, tri_stride)?;
-        data.get()?.start(arrays, normals)?
+        required(data)?.start(arrays, normals)?
     }
     fn dGeomTriMeshDataBuildDouble(
         data: MeshId, vertices: *const c_void, vertex_stride: c_int, vertex_count: c_int, indices: *const c_void,
         index_count: c_int, tri_stride: c_int,
     ) {
         let arrays = arrays(vertices, false, vertex_stride, vertex_count, indices, index_count, tri_stride)?;
-        data.get()?.start(arrays, core::ptr::null())?
+        required(data)?.start(arrays, core::ptr::null())?
     }
     #[allow(clippy::too_many_arguments)]
     fn dGeomTriMeshDataBuildDouble1(
@@ -388,27 +397,27 @@ export_unless! { "no-trimesh";
         index_count: c_int, tri_stride: c_int, normals: *const c_void,
     ) {
         let arrays = arrays(vertices, false, vertex_stride, vertex_count, indices, index_count, tri_stride)?;
-        data.get()?.start(arrays, normals)?
+        required(data)?.start(arrays, normals)?
     }
     fn dGeomTriMeshDataBuildSimple(
         data: MeshId, vertices: *const Real, vertex_count: c_int, indices: *const c_uint, index_count: c_int,
     ) {
-        data.get()?.start(simple(vertices, vertex_count, indices, index_count)?, core::ptr::null())?
+        required(data)?.start(simple(vertices, vertex_count, indices, index_count)?, core::ptr::null())?
     }
     fn dGeomTriMeshDataBuildSimple1(
         data: MeshId, vertices: *const Real, vertex_count: c_int, indices: *const c_uint, index_count: c_int,
         normals: *const c_int,
     ) {
-        data.get()?.start(simple(vertices, vertex_count, indices, index_count)?, normals.cast())?
+        required(data)?.start(simple(vertices, vertex_count, indices, index_count)?, normals.cast())?
     }
-    fn dGeomTriMeshDataUpdate(data: MeshId) { data.get()?.update()? }
+    fn dGeomTriMeshDataUpdate(data: MeshId) { required(data)?.update()? }
     fn dGeomTriMeshDataPreprocess(data: MeshId) -> c_int { preprocess(data, 1)? }
     /// Angles need no preparation here: the mesh knows what lies beyond each edge.
     fn dGeomTriMeshDataPreprocess2(data: MeshId, requests: c_uint, _extra: *const isize) -> c_int {
         preprocess(data, requests)?
     }
     fn dGeomTriMeshDataSet(data: MeshId, id: c_int, content: *mut c_void) {
-        let data = data.get()?;
+        let data = required(data)?;
         match id {
             0 => data.normals.set(content),
             1 => data.give_flags(content.cast())?,
@@ -416,7 +425,7 @@ export_unless! { "no-trimesh";
         }
     }
     fn dGeomTriMeshDataGet2(data: MeshId, id: c_int, size: Out<usize>) -> *mut c_void {
-        let data = data.get()?;
+        let data = required(data)?;
         let (pointer, bytes) = match id {
             0 => (data.normals.get(), data.triangle_count() * 3 * size_of::<Real>()),
             1 => (data.flags_pointer().cast(), data.triangle_count()),
@@ -427,7 +436,7 @@ export_unless! { "no-trimesh";
     }
     /// Declared by the headers, though libode lacks it.
     fn dGeomTriMeshDataGet(data: MeshId, id: c_int) -> *mut c_void {
-        let data = data.get()?;
+        let data = required(data)?;
         match id {
             0 => data.normals.get(),
             1 => data.flags_pointer().cast(),
@@ -435,12 +444,12 @@ export_unless! { "no-trimesh";
         }
     }
     fn dGeomTriMeshDataGetBuffer(data: MeshId, buffer: Out<*mut u8>, length: Out<c_int>) {
-        let data = data.get()?;
+        let data = required(data)?;
         let pointer = data.flags_pointer();
         buffer.set_if_wanted([pointer]);
         length.set_if_wanted([if pointer.is_null() { 0 } else { data.triangle_count() as c_int }])
     }
-    fn dGeomTriMeshDataSetBuffer(data: MeshId, buffer: *mut u8) { data.get()?.give_flags(buffer)? }
+    fn dGeomTriMeshDataSetBuffer(data: MeshId, buffer: *mut u8) { required(data)?.give_flags(buffer)? }
 
     fn dCreateTriMesh(
         space: GeomId, data: MeshId, tri: Option<TriCallback>, array: Option<ArrayCallback>, ray: Option<RayCallback>,
@@ -496,10 +505,10 @@ export_unless! { "no-trimesh";
     }
     fn dGeomTriMeshClearTCCache(geom: GeomId) { mesh_geom(geom)?; }
     fn dGeomTriMeshSetLastTransform(geom: GeomId, transform: In<Real, 16>) {
-        mesh_geom(geom)?.mesh.last_transform.set(transform.get()?)
+        moving(geom)?.mesh.last_transform.set(transform.get()?)
     }
     fn dGeomTriMeshGetLastTransform(geom: GeomId) -> *const Real {
-        mesh_geom(geom)?.mesh.last_transform.as_ptr().cast_const().cast()
+        moving(geom)?.mesh.last_transform.as_ptr().cast_const().cast()
     }
     fn dGeomTriMeshGetTriangle(geom: GeomId, index: c_int, v0: OutVector, v1: OutVector, v2: OutVector) {
         for (out, corner) in [v0, v1, v2].into_iter().zip(corners(geom, index)?) {
@@ -536,7 +545,7 @@ export! {
         let geom = geom.get()?;
         let [given] = size.get()?;
         if geom.class.get() != class::TRIMESH || control_class != 1 || !(0..=2).contains(&code) {
-            return Err(Fault::user("unknown control class or code"));
+            return Err(Fault::ARGUMENT);
         }
         let wanted = if code == 0 { 0 } else { size_of::<c_int>() as c_int };
         if given != wanted || (wanted > 0 && value.is_null()) {

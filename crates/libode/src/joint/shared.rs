@@ -181,7 +181,7 @@ export! {
     fn dJointGetType(joint: JointId) -> c_int { joint.get()?.joint_type.get().map_or(0, JointType::number) }
 
     fn dJointGetNumBodies(joint: JointId) -> c_int {
-        let joint = joint.get()?;
+        let joint = joint.get().map_err(|_| super::NO_JOINT)?;
         if joint.world.get().is_null() {
             return Ok(0);
         }

@@ -6,7 +6,7 @@ use crate::real::{Out, OutVector, Real, f, r, vec3};
 use crate::record::JointId;
 use core::ffi::c_int;
 use ferrode_dynamics::{
-    Ball, DBall, DHinge, Fixed, Hinge, Hinge2, PR, PU, Piston, Slider, Transmission, Universal,
+    Ball, DBall, DHinge, Fixed, Hinge, Hinge2, JointType, PR, PU, Piston, Slider, Transmission, Universal,
 };
 
 joint_functions! { Ball:
@@ -136,13 +136,41 @@ joint_functions! { Fixed:
 }
 
 joint_functions! { DBall:
-    vector dJointSetDBallAnchor1 set_anchor1;
-    vector dJointSetDBallAnchor2 set_anchor2;
     real dJointSetDBallDistance set_distance;
-    params dJointSetDBallParam dJointGetDBallParam;
-    get_vector dJointGetDBallAnchor1 anchor1;
-    get_vector dJointGetDBallAnchor2 anchor2;
-    get_real dJointGetDBallDistance distance;
+}
+
+fn is_double_hinge(joint: JointId) -> bool {
+    joint.live().is_some_and(|joint| joint.joint_type.get() == Some(JointType::DHinge))
+}
+
+/// As in libode a double hinge is a double ball too.
+macro_rules! either {
+    ($joint:ident, $work:ident($($arg:expr),*)) => {
+        if is_double_hinge($joint) { $work::<DHinge>($joint, $($arg),*) } else { $work::<DBall>($joint, $($arg),*) }
+    };
+    ($joint:ident, $work:ident<_>($($arg:expr),*)) => {
+        if is_double_hinge($joint) { $work::<DHinge, _>($joint, $($arg),*) } else { $work::<DBall, _>($joint, $($arg),*) }
+    };
+}
+
+export! {
+    fn dJointSetDBallAnchor1(joint: JointId, x: Real, y: Real, z: Real) {
+        either!(joint, change(|j| j.set_anchor1(vec3(x, y, z))))?
+    }
+    fn dJointSetDBallAnchor2(joint: JointId, x: Real, y: Real, z: Real) {
+        either!(joint, change(|j| j.set_anchor2(vec3(x, y, z))))?
+    }
+    fn dJointSetDBallParam(joint: JointId, parameter: c_int, value: Real) {
+        either!(joint, set_param(parameter, f(value)))?
+    }
+    fn dJointGetDBallParam(joint: JointId, parameter: c_int) -> Real { either!(joint, param(parameter))? }
+    fn dJointGetDBallAnchor1(joint: JointId, result: OutVector) {
+        either!(joint, get_vector<_>(result, |j| j.anchor1()))?
+    }
+    fn dJointGetDBallAnchor2(joint: JointId, result: OutVector) {
+        either!(joint, get_vector<_>(result, |j| j.anchor2()))?
+    }
+    fn dJointGetDBallDistance(joint: JointId) -> Real { either!(joint, get_real<_>(|j| j.distance()))? }
 }
 
 joint_functions! { DHinge:

@@ -1,7 +1,7 @@
 //! Pools of threads that serve a multi-threaded implementation.
 
 use super::{Calls, ImplementationId};
-use crate::fault::export;
+use crate::fault::{Fault, export};
 use crate::record::{Required, record};
 use crate::slab::{Handle, Pool, Record, Tag};
 use core::ffi::{c_uint, c_void};
@@ -135,6 +135,9 @@ export! {
     fn dThreadingAllocateThreadPool(
         thread_count: c_uint, stack_size: usize, _ode_data_allocate_flags: c_uint, _reserved: *mut c_void,
     ) -> PoolId {
+        if thread_count == 0 {
+            return Err(Fault::ARGUMENT);
+        }
         let Ok(threads) = Threads::start(thread_count, stack_size) else { return Ok(PoolId::NULL) };
         let pool = PoolRecord::pool().create();
         *pool.threads.write().unwrap_or_else(PoisonError::into_inner) = Some(threads);

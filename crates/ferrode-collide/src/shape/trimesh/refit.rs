@@ -1,7 +1,7 @@
 //! Meshes whose vertices move while the triangles stay: cloth, terrain that is dug, animated bodies.
 
 use super::{
-    FLAT, MeshData, Neighbour, ShapeError, TriMesh, check_vertices, edges_by_ends, normal_of, place,
+    Edge, MeshData, Neighbour, ShapeError, TriMesh, check_vertices, edges_by_ends, normal_of, place,
 };
 use ferrode_math::{Aabb, Vec3};
 use std::sync::Arc;
@@ -11,8 +11,19 @@ use std::sync::Arc;
 pub(super) struct Links {
     /// Vertices that lie where another one of a lower number does, with that number.
     welded: Vec<[u32; 2]>,
-    /// Pairs of edges with the same ends, as four times the triangle and the edge; in the order of `neighbours`.
-    edges: Vec<[u32; 2]>,
+    /// Pairs of edges with the same ends, in the order in which [`TriMesh::new`] looks at them.
+    pairs: Vec<[Side; 2]>,
+}
+
+/// An edge as one of its triangles has it.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    triangle: u32,
+    edge: u8,
+    /// Vertices: the edge's ends, and the triangle's third corner.
+    start: u32,
+    end: u32,
+    apex: u32,
 }
 
 impl Links {
@@ -28,9 +39,12 @@ impl Links {
                 welded.push([i as u32, *first]);
             }
         }
+        let side = |&(_, _, triangle, edge): &Edge| {
+            let corner = |k: u8| triangles[triangle as usize][usize::from((edge + k) % 3)];
+            Side { triangle, edge, start: corner(0), end: corner(1), apex: corner(2) }
+        };
         let same_ends = edges.windows(2).filter(|pair| (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1));
-        let code = |edge: &(u32, u32, u32, u8)| 4 * edge.2 + u32::from(edge.3);
-        Self { welded, edges: same_ends.map(|pair| [code(&pair[0]), code(&pair[1])]).collect() }
+        Self { welded, pairs: same_ends.map(|pair| [side(&pair[0]), side(&pair[1])]).collect() }
     }
 }
 
@@ -67,46 +81,30 @@ impl TriMesh {
 impl MeshData {
     fn refit(&mut self, links: &Links) {
         let (vertices, triangles) = (&self.vertices, &self.triangles);
-        let corners = |t: u32| triangles[t as usize].map(|v| vertices[v as usize]);
+        let at = |v: u32| vertices[v as usize];
         for (normal, t) in self.normals.iter_mut().zip(triangles) {
-            *normal = normal_of(t.map(|v| vertices[v as usize]));
+            *normal = normal_of(t.map(at));
         }
-        let normals = &self.normals;
         self.neighbours.fill([Neighbour::None; 3]);
-        for &[a, b] in &links.edges {
-            let (na, nb) = (normals[a as usize / 4], normals[b as usize / 4]);
+        for [a, b] in &links.pairs {
+            let (na, nb) = (self.normals[a.triangle as usize], self.normals[b.triangle as usize]);
             if na == Vec3::ZERO || nb == Vec3::ZERO {
                 continue;
             }
             for (here, there, n, other) in [(a, b, na, nb), (b, a, nb, na)] {
-                let (c, edge) = (corners(here / 4), here as usize % 4);
-                let apex = corners(there / 4)[(there as usize % 4 + 2) % 3];
-                self.neighbours[here as usize / 4][edge] = across(c[edge], c[(edge + 1) % 3], apex, n, other);
+                self.neighbours[here.triangle as usize][usize::from(here.edge)] =
+                    Neighbour::across(at(here.start), at(here.end), at(there.apex), n, other);
             }
         }
         self.bounds = Aabb::EMPTY;
-        for p in triangles.iter().flatten().map(|&v| vertices[v as usize]) {
-            self.bounds = self.bounds.union(&Aabb::new(p, p));
+        for (p, _) in vertices.iter().zip(&self.first_triangle).filter(|(_, t)| **t != u32::MAX) {
+            self.bounds = self.bounds.union(&Aabb::new(*p, *p));
         }
         self.tree.refit(|t| {
-            let [a, b, c] = corners(t);
+            let [a, b, c] = triangles[t as usize].map(at);
             Aabb::new(a.min(b).min(c), a.max(b).max(c))
         });
     }
-}
-
-/// As [`Neighbour::across`], which decides where it is close; else a root and a division are saved.
-fn across(start: Vec3, end: Vec3, apex: Vec3, normal: Vec3, other: Vec3) -> Neighbour {
-    let (along, d) = (end - start, apex - start);
-    let rise = normal.dot(d);
-    // The part of `d` across the edge is no longer than `d` itself.
-    if rise > 10.0 * FLAT * d.abs_max() {
-        return Neighbour::FlatOrConcave;
-    }
-    if rise < 0.0 && rise * rise > 100.0 * FLAT * FLAT * d.length_squared() && along != Vec3::ZERO {
-        return Neighbour::Convex(other);
-    }
-    Neighbour::across(start, end, apex, normal, other)
 }
 
 #[cfg(test)]
