@@ -67,6 +67,39 @@ fn a_stack_stands_and_sleeps() {
     assert!(woken);
 }
 
+/// Boxes poured into a bin, a little askew: faces lie on faces in all ways, and rocking on a single point would show.
+#[test]
+fn boxes_poured_into_a_bin_come_to_rest() {
+    let mut world = world();
+    ground(&mut world, Vec3::ZERO);
+    for (x, y) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+        let wall = Vec3::new(if x == 0.0 { 9.0 } else { 1.0 }, if y == 0.0 { 9.0 } else { 1.0 }, 20.0);
+        let at = Vec3::new(x * 3.85, y * 3.85, 10.0);
+        world.add_static(Cuboid::new(wall).unwrap(), Pose::from_position(at)).unwrap();
+    }
+    for i in 0..396usize {
+        let (x, y, z) = (i % 6, i / 6 % 6, i / 36);
+        let jitter = |k: usize| ((i * 7919 + k * 104_729) % 1000) as f64 * 1e-4 - 0.05;
+        let at = Vec3::new(x as f64 - 2.5, y as f64 - 2.5, 0.7 + z as f64 * 1.2) * 1.05;
+        let turn = Quat::from_axis_angle(Vec3::new(1.0, 0.3, 0.2), jitter(3) * 4.0);
+        let shape = Cuboid::new(Vec3::splat(0.9)).unwrap();
+        let at = at + Vec3::new(jitter(1), jitter(2), 0.0);
+        world.add_body(BodyBuilder::new().at(at).rotated(turn).with_shape(shape, 1000.0)).unwrap();
+    }
+    steps(&mut world, 60);
+    for _ in 0..240 {
+        assert!(world.step(H).unwrap().max_depth < 0.05);
+    }
+    for _ in 0..600 {
+        assert!(world.step(H).unwrap().max_depth < 0.01);
+    }
+    for (_, body) in world.bodies() {
+        assert!(!body.is_enabled(), "{:?} {:?}", body.position(), body.linear_velocity());
+        let at = body.position();
+        assert!(at.x.abs() < 3.0 && at.y.abs() < 3.0 && at.z > 0.4 && at.z < 12.0, "{at:?}");
+    }
+}
+
 #[test]
 fn far_from_the_origin_it_is_the_same() {
     let far = Vec3::new(1e7, -2e7, 1e7);

@@ -19,6 +19,15 @@ pub(super) enum Answer {
 const PARALLEL: f32 = 1e-4;
 /// By how much of the smaller size another axis must be better than a face, or than the last one.
 const PREFER: f32 = 1e-3;
+/// How much deeper than a product of edges the points over a face may be, as a part and of the smaller size, if their
+/// normals are all but the same. Boxes that lie on each other a little askew are about as deep along such a product; its
+/// one point would let them rock, and its normal turns with each step.
+const FACE_PART: f32 = 0.05;
+const FACE_LEAD: f32 = 1e-2;
+/// Normals are all but the same from this cosine on: eight degrees.
+const LEANING: f32 = 0.99;
+/// Among overlapping faces the last one stays while no other is shallower by this part.
+const LAST_FACE: f32 = 0.05;
 /// Corners of a rectangle cut at four sides.
 const CORNERS: usize = 8;
 
@@ -74,6 +83,22 @@ impl Pair {
         (d - a - b, 1.0 - r[i][j] * r[i][j])
     }
 
+    /// Whether a product of edges is all but the normal of a face.
+    fn leans(&self, i: usize, j: usize, face: usize) -> bool {
+        let r = &self.r;
+        let (i1, i2) = (NEXT[i], LAST[i]);
+        // Axis i of A times axis j of B, in A's coordinates.
+        let mut n = [0.0f32; 3];
+        n[i1] = -r[i2][j];
+        n[i2] = r[i1][j];
+        let along = if face < 3 {
+            n[face]
+        } else {
+            n[0] * r[0][face - 3] + n[1] * r[1][face - 3] + n[2] * r[2][face - 3]
+        };
+        along * along > LEANING * LEANING * (n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+    }
+
     /// The gap along an axis by its number: faces of A, faces of B, then nine products.
     #[inline(always)]
     fn gap(&self, axis: usize) -> f32 {
@@ -127,6 +152,12 @@ pub(super) fn boxes(
     search(&pair, fa, fb, margin, axis, out)
 }
 
+/// The gap that an axis must be above to win over one with the gap `best`: a part of its depth, and a lead.
+#[inline(always)]
+fn bar(best: f32, part: f32, lead: f32) -> f32 {
+    (if best < 0.0 { best * part } else { best }) + lead
+}
+
 fn search(pair: &Pair, fa: &Frame, fb: &Frame, margin: f32, axis: &mut Axis, out: &mut Manifold) -> Answer {
     let last = usize::from(axis.number.wrapping_sub(1));
     let least = |h: &[f32; 3]| {
@@ -143,15 +174,15 @@ fn search(pair: &Pair, fa: &Frame, fb: &Frame, margin: f32, axis: &mut Axis, out
             axis.number = k as u8 + 1;
             return Answer::Apart(gap - margin);
         }
-        let lead = if k == last {
-            -prefer
+        // The last axis wins unless it is clearly worse.
+        let wins = if k == last {
+            gap > bar(best.0, 1.0 + LAST_FACE, -prefer)
         } else if best.1 == last {
-            2.0 * prefer
+            gap > bar(best.0, 1.0 - LAST_FACE, 2.0 * prefer)
         } else {
-            prefer
+            gap > best.0 + prefer
         };
-        // Negative lead: the last axis wins unless it is clearly worse.
-        if k == 0 || gap > best.0 + lead {
+        if k == 0 || wins {
             best = (gap, k);
         }
     }
@@ -178,12 +209,38 @@ fn search(pair: &Pair, fa: &Frame, fb: &Frame, margin: f32, axis: &mut Axis, out
             }
         }
     }
-    axis.number = best.1 as u8 + 1;
-    match best.1 {
-        k @ 0..3 => face_contact::<true>(pair, k, best.0, margin, fa, fb, out),
-        k @ 3..6 => face_contact::<false>(pair, k - 3, best.0, margin, fa, fb, out),
-        k => edge_contact(pair, (k - 6) / 3, (k - 6) % 3, best.0, fa, fb, out),
+    let face_at = |k: usize, wanted: Wanted, out: &mut Manifold| match k {
+        0..3 => face_contact::<true>(pair, k, wanted, margin, fa, fb, out),
+        _ => face_contact::<false>(pair, k - 3, wanted, margin, fa, fb, out),
+    };
+    let (gap, k) = best;
+    let slack = 1e-3 * (sa + sb);
+    if k >= 6 && gap < 0.0 && pair.leans((k - 6) / 3, (k - 6) % 3, face.1) {
+        // All but the face's normal: if what lies over the face is wide and no deeper, it holds better.
+        let wanted = Wanted {
+            points: 3,
+            least: -gap - slack,
+            most: -gap * (1.0 + FACE_PART) + FACE_LEAD * if sa < sb { sa } else { sb },
+        };
+        if let Answer::Touch = face_at(face.1, wanted, out) {
+            axis.number = face.1 as u8 + 1;
+            return Answer::Touch;
+        }
     }
+    axis.number = k as u8 + 1;
+    if k < 6 {
+        face_at(k, Wanted { points: 1, least: -gap - slack, most: f32::INFINITY }, out)
+    } else {
+        edge_contact(pair, (k - 6) / 3, (k - 6) % 3, gap, fa, fb, out)
+    }
+}
+
+/// How many points there must be over a face at least, and between what the greatest depth must be.
+#[derive(Clone, Copy)]
+struct Wanted {
+    points: usize,
+    least: f32,
+    most: f32,
 }
 
 /// A corner of the clipped face in the reference box's coordinates: over its plane at (u, v), and how deep; with the
@@ -248,7 +305,7 @@ fn clip<const U: bool>(
 fn face_contact<const A: bool>(
     pair: &Pair,
     i: usize,
-    gap: f32,
+    wanted: Wanted,
     margin: f32,
     fa: &Frame,
     fb: &Frame,
@@ -332,7 +389,7 @@ fn face_contact<const A: bool>(
     }
     // Apart, and what is nearest is not over the face: the axes do not tell the distance. Overlapping, it is rounding.
     let size = hu + hv;
-    if n == 0 || deepest < -gap - 1e-3 * size {
+    if n < wanted.points || deepest < wanted.least || deepest > wanted.most {
         return Answer::Unclear;
     }
     let mut chosen = [0, 1, 2, 3];
