@@ -4,6 +4,7 @@
 
 mod common;
 
+use common::classes::{classes, moved};
 use ferrode_collide::narrow::{collide, collides, steady};
 use ferrode_collide::*;
 use ferrode_math::{Pose, Quat, Vec3};
@@ -12,40 +13,6 @@ use proptest::prelude::*;
 const SAME: f64 = 1e-9;
 /// The polytope's precision of depth on curved surfaces, in metres for bodies of about a metre.
 const ITERATED: f64 = 1e-6;
-
-fn tetrahedron() -> TriMesh {
-    let corners = vec![
-        Vec3::new(0.5, 0.5, 0.5),
-        Vec3::new(0.5, -0.5, -0.5),
-        Vec3::new(-0.5, 0.5, -0.5),
-        Vec3::new(-0.5, -0.5, 0.5),
-    ];
-    TriMesh::new(corners, vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]).unwrap()
-}
-
-/// One of each class.
-fn classes() -> Vec<(&'static str, Shape)> {
-    let heights = (0..49).map(|i| 0.05 * f64::from(i * 11 % 7)).collect();
-    let points: Vec<Vec3> = (0..12)
-        .map(|i| {
-            let t = f64::from(i);
-            Vec3::new((t * 7.0) % 5.0 - 2.0, (t * 3.0) % 5.0 - 2.0, (t * 11.0) % 7.0 - 3.0) * 0.2
-        })
-        .collect();
-    vec![
-        ("sphere", Sphere::new(0.5).unwrap().into()),
-        ("box", Cuboid::new(Vec3::new(0.9, 0.7, 0.5)).unwrap().into()),
-        ("capsule", Capsule::new(0.3, 0.8).unwrap().into()),
-        ("cylinder", Cylinder::new(0.4, 0.9).unwrap().into()),
-        ("plane", Plane::new(Vec3::new(0.3, -0.2, 0.9), 0.1).unwrap().into()),
-        ("ray", Ray::new(3.0).unwrap().into()),
-        ("convex", Convex::from_points(&points).unwrap().into()),
-        ("mesh", tetrahedron().into()),
-        ("heightfield", Heightfield::new(3.0, 3.0, 7, 7, heights, 1.0).unwrap().into()),
-        ("ellipsoid", Ellipsoid::new(Vec3::new(0.6, 0.4, 0.3)).unwrap().into()),
-        ("cone", Cone::new(0.4, 0.9).unwrap().into()),
-    ]
-}
 
 /// Whether contacts of a pair come from iteration on curved surfaces. Its depth is good; places and normals are good to the
 /// root of that, and of several points as deep the last bit may choose. Polyhedra, balls and capsules are exact.
@@ -68,17 +35,6 @@ fn list(source: Source, a: (&Shape, &Pose), b: (&Shape, &Pose)) -> Vec<GeomConta
     let n = source(a, b, CollideOptions::new(64), &mut out);
     assert_eq!(n, out.len());
     out
-}
-
-/// Where a shape stands after `m` moves the world: a plane carries its place in its equation.
-fn moved(shape: &Shape, at: &Pose, m: &Pose) -> (Shape, Pose) {
-    match shape {
-        Shape::Plane(p) => {
-            let n = m.rotation.rotate(p.normal());
-            (Plane::new(n, p.d() + n.dot(m.position)).unwrap().into(), *at)
-        }
-        other => (other.clone(), *m * *at),
-    }
 }
 
 fn pose(size: f64) -> impl Strategy<Value = Pose> {

@@ -1,8 +1,9 @@
 //! The contact of any two convex bodies: distance if their cores are apart, least overlap if not.
 
 use super::epa::{Depth, epa};
-use super::gjk::{Gap, Simplex, gjk, gjk_from};
+use super::gjk::{EXACT, Gap, Simplex, gjk_from};
 use super::line_gap::line_gap;
+use super::stationary::least_near;
 use super::support::Body;
 use ferrode_math::Vec3;
 
@@ -23,14 +24,40 @@ pub(crate) fn touch(a: &Body<'_>, b: &Body<'_>) -> Option<Touch> {
     if let Some((pa, pb)) = line_gap(a, b) {
         return apart(a, b, pa, pb, pa - pb).filter(|t| t.depth >= 0.0);
     }
-    let simplex = match gjk(a, b, margin) {
-        Gap::Far => return None,
-        Gap::Apart { a: pa, b: pb, between } => {
-            return apart(a, b, pa, pb, between).filter(|t| t.depth >= 0.0);
+    match gap(a, b, margin) {
+        Gap::Far => None,
+        Gap::Apart { a: pa, b: pb, between, .. } => apart(a, b, pa, pb, between).filter(|t| t.depth >= 0.0),
+        Gap::Overlap(simplex) => Some(overlapping(a, b, &simplex)),
+    }
+}
+
+/// What is left of the squared distance to gain when Newton's method takes over on curved surfaces.
+const NEAR: f64 = 1e-2;
+
+/// The nearest points of two cores, as exactly as numbers allow, or a simplex about the origin if they overlap. Cores known
+/// to be further apart than `limit` are not looked at closely.
+///
+/// On curved surfaces GJK alone converges slowly, and to points that are good to the root of what the distance is.
+pub(crate) fn gap(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
+    let start = a.center - b.center;
+    if !(a.is_round() || b.is_round()) {
+        return gjk_from(a, b, limit, start, EXACT);
+    }
+    let scale = a.reach() + b.reach() + start.length();
+    let mut found = gjk_from(a, b, limit, start, NEAR);
+    for rest in [1e-6, EXACT, 0.0] {
+        let Gap::Apart { between, simplex, .. } = &found else { break };
+        if let Some(l) =
+            between.normalized().and_then(|n| least_near(a, b, -n, &simplex.vertices[..simplex.count], scale))
+            && l.depth < 0.0
+        {
+            return Gap::Apart { a: l.a, b: l.b, between: l.normal * l.depth, simplex: *simplex };
         }
-        Gap::Overlap(simplex) => simplex,
-    };
-    Some(overlapping(a, b, &simplex))
+        if rest > 0.0 {
+            found = gjk_from(a, b, limit, *between, rest);
+        }
+    }
+    found
 }
 
 /// What is left of the squared distance to gain for manifolds, whose numbers are in single precision.
@@ -51,7 +78,7 @@ pub(crate) fn touch_within(
     let start = guess.unwrap_or(a.center - b.center);
     match gjk_from(a, b, a.margin + b.margin + within + more, start, ROUGH_DISTANCE) {
         Gap::Far => Err(more),
-        Gap::Apart { a: pa, b: pb, between } => match apart(a, b, pa, pb, between) {
+        Gap::Apart { a: pa, b: pb, between, .. } => match apart(a, b, pa, pb, between) {
             Some(t) if t.depth >= -within => Ok(t),
             Some(t) => Err(-t.depth - within),
             None => Err(0.0),
@@ -87,7 +114,7 @@ fn shallow(a: &Body<'_>, b: &Body<'_>, guess: Vec3) -> Option<Touch> {
         }
         let shift = n * (depth.max(0.0) + 0.02 * size);
         moved.center = a.center + shift;
-        let Gap::Apart { a: pa, b: pb, between } = gjk_from(&moved, b, f64::INFINITY, n, ROUGH_DISTANCE)
+        let Gap::Apart { a: pa, b: pb, between, .. } = gjk_from(&moved, b, f64::INFINITY, n, ROUGH_DISTANCE)
         else {
             return None;
         };

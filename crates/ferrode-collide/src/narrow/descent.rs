@@ -6,22 +6,10 @@
 //! valley across which the support point jumps; there the descent goes on along the great circle of the valley, and the
 //! point that touches lies on the segment of the jump.
 
+use super::stationary::Least;
 use super::support::{Body, Vertex, difference};
 use super::unit::{unit, unit_or};
 use ferrode_math::{Vec3, plane_space};
-
-/// A direction whose neighbours all overlap more.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Least {
-    /// Unit.
-    pub normal: Vec3,
-    pub depth: f64,
-    /// The point of the difference that touches the plane across the normal, which is the foot of the origin there, and
-    /// the points of the two bodies.
-    pub w: Vec3,
-    pub a: Vec3,
-    pub b: Vec3,
-}
 
 /// Angle over which curvature is measured, in radians.
 const PROBE: f64 = 1e-4;

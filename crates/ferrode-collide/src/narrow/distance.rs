@@ -1,8 +1,8 @@
 //! How far two shapes are apart.
 
-use super::convex::touch;
+use super::convex::{gap, touch};
 use super::custom::own_distance;
-use super::gjk::{Gap, gjk};
+use super::gjk::Gap;
 use super::support::Body;
 use super::triangle::bounds;
 use crate::space::Probe;
@@ -216,8 +216,8 @@ pub(super) fn body_distance(a: &Body<'_>, b: &Body<'_>, origin: Vec3) -> Distanc
     if let Some(t) = touch(a, b) {
         return Distance { distance: -t.depth, a: t.a + origin, b: t.b + origin, normal: t.normal };
     }
-    let (pa, pb, between) = match gjk(a, b, f64::INFINITY) {
-        Gap::Apart { a, b, between } => (a, b, between),
+    let (pa, pb, between) = match gap(a, b, f64::INFINITY) {
+        Gap::Apart { a, b, between, .. } => (a, b, between),
         // Between touching and not, to the last bit.
         Gap::Overlap(simplex) => {
             let (a, b) = simplex.witnesses();

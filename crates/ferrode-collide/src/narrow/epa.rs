@@ -6,10 +6,11 @@
 //! there a [descent](super::descent) goes on from the polytope's best normal, and the polytope has but to grow until no
 //! face away from there is nearer.
 
-use super::descent::{Least, descend};
+use super::descent::descend;
 use super::gjk::Simplex;
-use super::polytope::{POLYTOPE, Polytope};
-use super::support::{Body, Vertex, difference};
+use super::polytope::{Face, POLYTOPE, Polytope};
+use super::stationary::{Least, least_near};
+use super::support::{Body, Core, Vertex, difference};
 use ferrode_math::Vec3;
 
 /// The least overlap of two cores.
@@ -74,6 +75,15 @@ pub(crate) fn epa(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex) -> Option<Depth
     })
 }
 
+/// The least overlap near the normal of a face, whose support point is `next`.
+fn local(a: &Body<'_>, b: &Body<'_>, p: &Polytope, face: &Face, next: Vertex, scale: f64) -> Option<Least> {
+    let own = |body: &Body<'_>| matches!(body.core, Core::Custom(_));
+    if own(a) || own(b) {
+        return descend(a, b, face.normal, next, scale);
+    }
+    least_near(a, b, face.normal, &face.v.map(|i| p.vertex(i)), scale)
+}
+
 fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut Polytope) -> Option<Depth> {
     p.start(corners);
     let tolerance = TOLERANCE * scale;
@@ -121,7 +131,7 @@ fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut 
         let mut added = next;
         if round && least.is_none() && descents < DESCENTS && reach - best.distance < NEAR * scale {
             descents += 1;
-            if let Some(l) = descend(a, b, best.normal, next, scale)
+            if let Some(l) = local(a, b, p, &best, next, scale)
                 && l.depth <= upper
             {
                 // The point that touches, unless the nearest face does not see it.
@@ -143,7 +153,7 @@ fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut 
     if least.is_none() && round && upper - result.distance > tolerance {
         // Out of room, on surfaces curved both ways.
         let at = difference(a, b, result.normal);
-        least = descend(a, b, result.normal, at, scale).filter(|l| l.depth <= upper);
+        least = local(a, b, p, &result, at, scale).filter(|l| l.depth <= upper);
     }
     if let Some(l) = least {
         return Some(Depth { normal: l.normal, depth: l.depth.max(0.0), a: l.a, b: l.b });

@@ -24,8 +24,8 @@ pub(crate) struct Simplex {
 pub(crate) enum Gap {
     /// Further apart than was asked about.
     Far,
-    /// Apart: nearest points and the difference a − b, which is not zero.
-    Apart { a: Vec3, b: Vec3, between: Vec3 },
+    /// Apart: nearest points, the difference a − b, which is not zero, and the simplex that has it.
+    Apart { a: Vec3, b: Vec3, between: Vec3, simplex: Simplex },
     /// They share a point, up to rounding: a simplex that contains, or touches, the origin.
     Overlap(Simplex),
 }
@@ -168,16 +168,13 @@ pub(super) fn nearest_of_triangle(a: Vec3, b: Vec3, c: Vec3) -> ([usize; 3], [f6
     ([0, 1, 2], [1.0 - v - w, v, w], 3)
 }
 
+/// What is left of the squared distance to gain when the search ends: all but rounding.
+pub(crate) const EXACT: f64 = 1e-13;
+
 /// The nearest points of two cores, or a simplex about the origin if they overlap. Cores known to be further apart
 /// than `limit` are not looked at closely.
-pub(crate) fn gjk(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
-    gjk_from(a, b, limit, a.center - b.center, EXACT)
-}
-
-/// What is left of the squared distance to gain when the search ends: all but rounding.
-const EXACT: f64 = 1e-13;
-
-/// As [`gjk`], from a direction that may be near the answer, until no more than `rest` of the squared distance is left
+///
+/// Begins with a direction that may be near the answer, and ends when no more than `rest` of the squared distance is left
 /// to gain.
 pub(crate) fn gjk_from(a: &Body<'_>, b: &Body<'_>, limit: f64, start: Vec3, rest: f64) -> Gap {
     let mut d = start;
@@ -234,5 +231,5 @@ pub(crate) fn gjk_from(a: &Body<'_>, b: &Body<'_>, limit: f64, start: Vec3, rest
     let best = part.simplex(&vertices, None);
     let (pa, pb) = best.witnesses();
     let between = furthest.normalized_or(Vec3::X) * v.length();
-    Gap::Apart { a: pa, b: pb, between }
+    Gap::Apart { a: pa, b: pb, between, simplex: best }
 }

@@ -58,6 +58,7 @@ mod sphere_cuboid;
 mod sphere_plane;
 mod sphere_sphere;
 mod sphere_trimesh;
+mod stationary;
 mod steady;
 pub(crate) mod support;
 pub(crate) mod triangle;

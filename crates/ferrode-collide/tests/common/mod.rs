@@ -1,16 +1,21 @@
 //! Reading recorded cases.
 #![allow(dead_code)]
 
+pub mod classes;
 pub mod judge;
 
 use ferrode_collide::*;
 use ferrode_math::{Mat3, Vec3, rotation};
 use serde_json::Value;
 
-/// The seed of property tests: `PROPTEST_RNG_SEED`, else always the same.
+/// The seed of random tests: `PROPTEST_RNG_SEED`, else always the same.
+pub fn seed_number() -> u64 {
+    std::env::var("PROPTEST_RNG_SEED").ok().and_then(|s| s.parse().ok()).unwrap_or(1)
+}
+
+/// As [`seed_number`], for property tests.
 pub fn seed() -> proptest::test_runner::RngSeed {
-    let seed = std::env::var("PROPTEST_RNG_SEED").ok().and_then(|s| s.parse().ok());
-    proptest::test_runner::RngSeed::Fixed(seed.unwrap_or(1))
+    proptest::test_runner::RngSeed::Fixed(seed_number())
 }
 
 /// A recorded number; "inf", "-inf" and "nan" are strings.
