@@ -42,8 +42,9 @@ impl Pair<'_> {
 
     /// Half the cylinder's extent along the unit axis `n`.
     fn cylinder_reach(&self, n: Vec3) -> f64 {
-        let c = n.dot(self.u);
-        c.abs() * 0.5 * self.cylinder.length() + self.cylinder.radius() * (1.0 - c * c).max(0.0).sqrt()
+        // The sine by the cross product: from a cosine near 1 it would be rounding's root.
+        let across = self.u.cross(n).length();
+        n.dot(self.u).abs() * 0.5 * self.cylinder.length() + self.cylinder.radius() * across
     }
 
     /// Tries an axis of any length; false if it separates.

@@ -109,9 +109,10 @@ pub fn distance_frames(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> Option<Dista
             body_mesh_distance(&Body::of(sa, fa, origin)?, origin, mesh, fb, None)
         }
         _ => {
-            let origin = fa.position;
-            let (ba, bb) = (Body::of(sa, fa, origin)?, Body::of(sb, fb, origin)?);
-            Some(body_distance(&ba, &bb, origin))
+            // In the first one's coordinates: where the pair is in the world changes nothing.
+            let local = Frame::new(fa.point_to_local(fb.position), fa.rotation.transpose() * fb.rotation);
+            let (ba, bb) = (Body::of(sa, &Frame::IDENTITY, Vec3::ZERO)?, Body::of(sb, &local, Vec3::ZERO)?);
+            Some(body_distance(&ba, &bb, Vec3::ZERO).placed(fa))
         }
     }
 }

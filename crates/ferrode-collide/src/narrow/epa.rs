@@ -150,10 +150,10 @@ fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut 
             None => break,
         }
     }
-    if least.is_none() && round && upper - result.distance > tolerance {
-        // Out of room, on surfaces curved both ways.
+    if least.is_none() && round {
+        // The last face has the normal to the root of its distance's error.
         let at = difference(a, b, result.normal);
-        least = local(a, b, p, &result, at, scale).filter(|l| l.depth <= upper);
+        least = local(a, b, p, &result, at, scale).filter(|l| l.depth <= upper + tolerance);
     }
     if let Some(l) = least {
         return Some(Depth { normal: l.normal, depth: l.depth.max(0.0), a: l.a, b: l.b });

@@ -40,6 +40,10 @@ pub(super) struct Least {
 const STEPS: usize = 24;
 /// Furthest step, in radians.
 const FURTHEST: f64 = 0.3;
+/// Cosine of a direction and the axis of a disc from which they are one.
+const ON_AXIS: f64 = 1.0 - 1e-14;
+/// How often a step is cut to a quarter that would lead across a disc.
+const SHORTER: usize = 4;
 /// After a step no longer than this, in radians, another would change nothing but rounding.
 const SETTLED: f64 = 1e-8;
 /// Part of the bodies' size within which points lie on each other.
@@ -72,13 +76,33 @@ pub(super) fn least_near(
     };
     let (mut pa, mut pb) = (part(a, |v| v.a, m)?, part(b, |v| v.b, -m)?);
     let slack = 1e-15 * scale;
+    // Whether the foot was found to lie beside a disc: then its rim is not left across it any more.
+    let mut off_disc = false;
+    // The direction of last looking beside the axis of a disc.
+    let mut leaning = m;
     for _ in 0..STEPS {
-        let (next, settled) = match step(a, b, &pa, &pb, m, scale)? {
+        let (mut next, mut settled) = match step(a, b, &pa, &pb, m, scale)? {
             Step::Turn(next, length) => (next, length <= SETTLED),
             Step::Settled(next) => (next, true),
         };
+        if off_disc {
+            for _ in 0..SHORTER {
+                if pa.crosses(next, m) || pb.crosses(-next, -m) {
+                    (next, settled) = (unit(m * 3.0 + next)?, false);
+                }
+            }
+        }
         // The parts may not face the new direction any more.
-        let (la, lb) = (pa.left(a, next, m, slack), pb.left(b, -next, -m, slack));
+        let (mut la, mut lb) = (pa.left(a, next, m, slack), pb.left(b, -next, -m, slack));
+        // On a face the other body has the furthest point, wherever that is.
+        if is_flat(&pa) {
+            (pb, lb) = (Part::through(b, &[b.support(-next)], -next)?, None);
+        } else if is_flat(&pb) {
+            (pa, la) = (Part::through(a, &[a.support(next)], next)?, None);
+        }
+        if !settled {
+            leaning = m;
+        }
         m = next;
         if la.is_some() || lb.is_some() {
             pa = la.unwrap_or(pa);
@@ -99,12 +123,37 @@ pub(super) fn least_near(
                 return good.then_some(Least { normal: m, depth, w, a: pa, b: pb });
             }
             Foot::Beside(na, nb) => {
+                if is_disc(&pa) || is_disc(&pb) {
+                    // Off its axis again, where the rim has a direction.
+                    m = if m.dot(leaning) < ON_AXIS { leaning } else { rim_direction(a, b, &pa, &pb, m)? };
+                    off_disc = true;
+                }
                 pa = na.unwrap_or(pa);
                 pb = nb.unwrap_or(pb);
             }
         }
     }
     None
+}
+
+fn is_disc(p: &Part) -> bool {
+    matches!(p, Part::Disc { .. })
+}
+
+fn is_flat(p: &Part) -> bool {
+    matches!(p, Part::Triangle { .. } | Part::Disc { .. })
+}
+
+/// For a disc with the foot beside it: the direction between its rim and the other body.
+fn rim_direction(a: &Body<'_>, b: &Body<'_>, pa: &Part, pb: &Part, m: Vec3) -> Option<Vec3> {
+    let w = if is_disc(pa) {
+        let q = b.support(-m);
+        pa.rim_towards(q)? - q
+    } else {
+        let q = a.support(m);
+        q - pb.rim_towards(q)?
+    };
+    unit(w).map(|w| if w.dot(m) < 0.0 { -w } else { w })
 }
 
 /// A step towards the direction of least overlap of two parts.
@@ -214,12 +263,11 @@ enum Foot {
 fn foot(a: &Body<'_>, b: &Body<'_>, pa: &Part, pb: &Part, m: Vec3) -> Option<Foot> {
     let (qa, _) = pa.point(a, m, Vec3::ZERO, Vec3::ZERO);
     let (qb, _) = pb.point(b, -m, Vec3::ZERO, Vec3::ZERO);
-    let flat = |p: &Part| matches!(p, Part::Triangle { .. } | Part::Disc { .. });
     let w = qa - qb;
     let h = m.dot(w);
-    if flat(pa) || flat(pb) {
+    if is_flat(pa) || is_flat(pb) {
         // The other's furthest point, seen on the face.
-        if flat(pa) {
+        if is_flat(pa) {
             let qb = b.support(-m);
             let qa = qb + m * m.dot(qa - qb);
             return Some(pa.beside(qa).map_or(Foot::At(qa, qb), |p| Foot::Beside(Some(p), None)));

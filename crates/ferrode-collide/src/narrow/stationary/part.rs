@@ -220,6 +220,20 @@ impl Part {
         }
     }
 
+    /// For rims: whether the way from one direction to another leads across the axis, to the other side of the disc.
+    pub fn crosses(&self, d: Vec3, before: Vec3) -> bool {
+        let Self::Rim { axis, .. } = *self else { return false };
+        let across = |d: Vec3| d - axis * axis.dot(d);
+        axis.dot(d) > 0.0 && across(d).dot(across(before)) < 0.0
+    }
+
+    /// For discs: the point of the rim that is nearest to a point of their plane, or beside it.
+    pub fn rim_towards(&self, p: Vec3) -> Option<Vec3> {
+        let Self::Disc { center, axis, radius } = *self else { return None };
+        let off = p - center;
+        Some(center + (off - axis * axis.dot(off)).normalized()? * radius)
+    }
+
     /// What to look at instead once `d` has turned away from what this part faces; `None` if it has not.
     /// `before` is the direction of the last step.
     pub fn left(&self, body: &Body<'_>, d: Vec3, before: Vec3, slack: f64) -> Option<Self> {
@@ -233,8 +247,7 @@ impl Part {
                 (d.dot(q - p) > slack).then_some(Self::Line { from: p, to: q, margin: 0.0 })
             }
             (Self::Rim { center, axis, radius }, core) => {
-                let across = |d: Vec3| d - axis * axis.dot(d);
-                if axis.dot(d) > 0.0 && across(d).dot(across(before)) < 0.0 {
+                if self.crosses(d, before) {
                     return Some(Self::Disc { center, axis, radius });
                 }
                 match *core {
