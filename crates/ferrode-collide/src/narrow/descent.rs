@@ -31,7 +31,7 @@ pub(super) fn descend(a: &Body<'_>, b: &Body<'_>, mut n: Vec3, mut at: Vertex, s
     for _ in 0..STEPS {
         let off = at.w - n * h;
         if off.length_squared() <= (AT_FOOT * scale) * (AT_FOOT * scale) {
-            return Some(Least { normal: n, depth: h, w: at.w, a: at.a, b: at.b });
+            return Some(Least { normal: n, depth: h, w: at.w, a: at.a, b: at.b, firm: true });
         }
         let (s, t) = plane_space(n);
         // How the support point moves when the direction turns towards s and towards t.
@@ -89,7 +89,14 @@ fn follow_valley(a: &Body<'_>, b: &Body<'_>, mut n: Vec3, along: Vec3, scale: f6
             let share = -down / (up - down);
             let mix = |x: Vec3, y: Vec3| y + (x - y) * share;
             let w = mix(p.w, q.w);
-            return Some(Least { normal: n, depth: n.dot(w), w, a: mix(p.a, q.a), b: mix(p.b, q.b) });
+            return Some(Least {
+                normal: n,
+                depth: n.dot(w),
+                w,
+                a: mix(p.a, q.a),
+                b: mix(p.b, q.b),
+                firm: true,
+            });
         }
         let h = n.dot(p.w);
         let turned = difference(a, b, n + t * PROBE + e * WALL).w - p.w;

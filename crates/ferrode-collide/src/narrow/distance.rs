@@ -121,6 +121,9 @@ pub fn distance_frames(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> Option<Dista
 /// away, gets the distance to the part below its middle.
 const MOST_CELLS: i64 = 16;
 
+/// Part of a body's size by which two distances are one.
+const EQUAL: f64 = 1e-12;
+
 /// The least distance to a triangle of a field, in whose coordinates the body is.
 fn body_field_distance(body: &Body<'_>, field: &Heightfield) -> Option<Distance> {
     let (sx, sz) = field.cell();
@@ -145,7 +148,8 @@ fn body_field_distance(body: &Body<'_>, field: &Heightfield) -> Option<Distance>
                 return;
             }
             let d = body_distance(body, &Body::triangle(corners), Vec3::ZERO);
-            if best.is_none_or(|b| d.distance < b.distance) {
+            // Of equals the first, whatever rounding makes of them.
+            if best.is_none_or(|b| d.distance < b.distance - EQUAL * body.reach()) {
                 best = Some(d);
             }
         });

@@ -30,8 +30,10 @@ const TOLERANCE: f64 = 1e-9;
 const NEAR: f64 = 0.1;
 /// Cosine between the normal that a descent found and those of faces at its point beyond which these count as found.
 const SAME_PLACE: f64 = 0.98;
+/// As that, if the surface there is flat, or curved, hardly enough to be a way out: another may be close by.
+const SAME_SPOT: f64 = 0.9999;
 /// Most descents.
-const DESCENTS: usize = 4;
+const DESCENTS: usize = 8;
 
 /// Completes a simplex to a tetrahedron; `None` if the difference is flat.
 fn tetrahedron(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex, scale: f64) -> Option<[Vertex; 4]> {
@@ -117,7 +119,7 @@ fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut 
             break;
         }
         if let Some(l) = &least
-            && best.normal.dot(l.normal) > SAME_PLACE
+            && best.normal.dot(l.normal) > if l.firm { SAME_PLACE } else { SAME_SPOT }
             && p.has_point(nearest, l.w)
         {
             // Beside the least overlap, and no better: the surface curves away from there.

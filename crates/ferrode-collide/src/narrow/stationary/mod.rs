@@ -21,7 +21,7 @@ mod part;
 use super::support::{Body, Vertex, difference};
 use super::unit::unit;
 use ferrode_math::{Vec3, plane_space};
-use part::{Bound, Part};
+use part::{Beside, Bound, Part};
 
 /// A direction whose neighbours all overlap more.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +34,8 @@ pub(super) struct Least {
     pub w: Vec3,
     pub a: Vec3,
     pub b: Vec3,
+    /// Whether directions some way around overlap more, as far as the parts that touch tell.
+    pub firm: bool,
 }
 
 /// Most steps.
@@ -46,15 +48,19 @@ const ON_AXIS: f64 = 1.0 - 1e-14;
 const SHORTER: usize = 4;
 /// After a step no longer than this, in radians, another would change nothing but rounding.
 const SETTLED: f64 = 1e-8;
-/// Part of the bodies' size within which points lie on each other.
-const EXACT: f64 = 1e-12;
+/// Part of the bodies' size that the foot may be beside the touching points: what rounding makes of lines nearly parallel.
+const AT_FOOT: f64 = 1e-10;
+/// Part of the bodies' size by which they may reach further than the parts that touch.
+const REACH: f64 = 1e-11;
+/// Part of the depth that the way to a part's end, and the rise of the slope, must have for a way out to be firm.
+const FIRM: f64 = 0.2;
 /// Squared sine of the angle between lines below which they are parallel.
 const PARALLEL: f64 = 1e-20;
 
 /// What a step came to.
 enum Step {
-    /// The next direction, and how far it is.
-    Turn(Vec3, f64),
+    /// The next direction, how far it is, and how fast the slope rises in the direction where that is slowest.
+    Turn(Vec3, f64, f64),
     /// Nothing is left to choose.
     Settled(Vec3),
 }
@@ -81,9 +87,9 @@ pub(super) fn least_near(
     // The direction of last looking beside the axis of a disc.
     let mut leaning = m;
     for _ in 0..STEPS {
-        let (mut next, mut settled) = match step(a, b, &pa, &pb, m, scale)? {
-            Step::Turn(next, length) => (next, length <= SETTLED),
-            Step::Settled(next) => (next, true),
+        let (mut next, mut settled, bend) = match step(a, b, &pa, &pb, m, scale)? {
+            Step::Turn(next, length, bend) => (next, length <= SETTLED, bend),
+            Step::Settled(next) => (next, true, f64::INFINITY),
         };
         if off_disc {
             for _ in 0..SHORTER {
@@ -113,14 +119,16 @@ pub(super) fn least_near(
             continue;
         }
         match foot(a, b, &pa, &pb, m)? {
-            Foot::At(pa, pb) => {
+            Foot::At(pa, pb, inside) => {
                 let whole = difference(a, b, m);
                 let w = pa - pb;
                 let depth = m.dot(w);
                 let off = w - m * depth;
-                let good = off.length_squared() <= (EXACT * scale) * (EXACT * scale)
-                    && m.dot(whole.w) - depth <= EXACT * scale;
-                return good.then_some(Least { normal: m, depth, w, a: pa, b: pb });
+                let good = off.length_squared() <= (AT_FOOT * scale) * (AT_FOOT * scale)
+                    && m.dot(whole.w) - depth <= REACH * scale;
+                // Turning by a small angle t changes the overlap by inside · t, or bend · t²/2, less depth · t²/2.
+                let firm = inside >= FIRM * depth && bend >= FIRM * depth;
+                return good.then_some(Least { normal: m, depth, w, a: pa, b: pb, firm });
             }
             Foot::Beside(na, nb) => {
                 if is_disc(&pa) || is_disc(&pb) {
@@ -195,7 +203,9 @@ fn step(a: &Body<'_>, b: &Body<'_>, pa: &Part, pb: &Part, m: Vec3, scale: f64) -
     };
     let length = turn.length();
     let turn = if length > FURTHEST { turn * (FURTHEST / length) } else { turn };
-    Some(Step::Turn(unit(m - turn)?, length))
+    // The lesser eigenvalue.
+    let bend = 0.5 * (ss + tt - ((ss - tt) * (ss - tt) + 4.0 * st * st).sqrt());
+    Some(Step::Turn(unit(m - turn)?, length, bend))
 }
 
 /// The unit vector nearest to `m` whose products with the unit vectors `e` and `f` are `x` and `y`.
@@ -249,13 +259,13 @@ fn on_circle(
     let turn = turn.clamp(-FURTHEST, FURTHEST);
     let out = unit(out - tangent * turn)?;
     let next = e * x + out * radius;
-    Some(Step::Turn(next, (next - m).length()))
+    Some(Step::Turn(next, (next - m).length(), rate))
 }
 
 /// Where the foot of the origin is.
 enum Foot {
-    /// The points of the two bodies.
-    At(Vec3, Vec3),
+    /// The points of the two bodies, and how far the next end or edge of a part is at least.
+    At(Vec3, Vec3, f64),
     /// Beside these parts, on those.
     Beside(Option<Part>, Option<Part>),
 }
@@ -270,11 +280,17 @@ fn foot(a: &Body<'_>, b: &Body<'_>, pa: &Part, pb: &Part, m: Vec3) -> Option<Foo
         if is_flat(pa) {
             let qb = b.support(-m);
             let qa = qb + m * m.dot(qa - qb);
-            return Some(pa.beside(qa).map_or(Foot::At(qa, qb), |p| Foot::Beside(Some(p), None)));
+            return Some(match pa.beside(qa) {
+                Beside::Within(inside) => Foot::At(qa, qb, inside),
+                Beside::On(p) => Foot::Beside(Some(p), None),
+            });
         }
         let qa = a.support(m);
         let qb = qa - m * m.dot(qa - qb);
-        return Some(pb.beside(qb).map_or(Foot::At(qa, qb), |p| Foot::Beside(None, Some(p))));
+        return Some(match pb.beside(qb) {
+            Beside::Within(inside) => Foot::At(qa, qb, inside),
+            Beside::On(p) => Foot::Beside(None, Some(p)),
+        });
     }
     let off = w - m * h;
     let (ra, rb) = (pa.ruling(a, m), pb.ruling(b, -m));
@@ -311,5 +327,17 @@ fn foot(a: &Body<'_>, b: &Body<'_>, pa: &Part, pb: &Part, m: Vec3) -> Option<Foo
         return Some(Foot::Beside(na, nb));
     }
     let along = |q: Vec3, r: Option<Vec3>, x: f64| r.map_or(q, |r| q + r * x);
-    Some(Foot::At(along(qa, ra, x), along(qb, rb, y)))
+    let inside = |p: &Part, r: Option<Vec3>, x: f64| {
+        r.map_or(f64::INFINITY, |r| {
+            let (lo, hi) = p.shares();
+            (x - lo).min(hi - x) * r.length()
+        })
+    };
+    let inside = inside(pa, ra, x).min(inside(pb, rb, y));
+    // The field between two lines is as much narrower as they are parallel.
+    let sine = match (ra, rb) {
+        (Some(u), Some(v)) => u.cross(v).length() / (u.length() * v.length()),
+        _ => 1.0,
+    };
+    Some(Foot::At(along(qa, ra, x), along(qb, rb, y), inside * sine))
 }

@@ -31,6 +31,14 @@ pub(super) enum Bound {
     Fixed(Vec3),
 }
 
+/// Where a point of a flat part's plane lies.
+pub(super) enum Beside {
+    /// On the part, this far from its edge, or less than that.
+    Within(f64),
+    /// Beside it, where this part is the next.
+    On(Part),
+}
+
 /// Part of a line or face by which a point beside it still counts as on it: rounding, no more.
 const SHARE: f64 = 1e-9;
 /// Cosine of direction and axis from which a disc, rather than its rim, is looked at first.
@@ -187,8 +195,8 @@ impl Part {
         }
     }
 
-    /// For flat parts: the part on which a point of their plane lies; `None` if it is this one.
-    pub fn beside(&self, p: Vec3) -> Option<Self> {
+    /// For flat parts: where a point of their plane lies.
+    pub fn beside(&self, p: Vec3) -> Beside {
         match *self {
             Self::Triangle { corners: [a, b, c], normal } => {
                 let area = (b - a).cross(c - a).dot(normal);
@@ -203,20 +211,24 @@ impl Part {
                         least = i;
                     }
                 }
-                let edges = [(b, c), (c, a), (a, b)];
-                let (from, to) = edges[least];
-                (shares[least] < -SHARE).then_some(Self::Line { from, to, margin: 0.0 })
+                let (from, to) = [(b, c), (c, a), (a, b)][least];
+                if shares[least] < -SHARE {
+                    Beside::On(Self::Line { from, to, margin: 0.0 })
+                } else {
+                    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+                    Beside::Within(shares[least] * area / longest)
+                }
             }
             Self::Disc { center, axis, radius } => {
                 let off = p - center;
-                let across = off - axis * axis.dot(off);
-                (across.length_squared() > radius * radius * (1.0 + SHARE)).then_some(Self::Rim {
-                    center,
-                    axis,
-                    radius,
-                })
+                let inside = radius - (off - axis * axis.dot(off)).length();
+                if inside < -SHARE * radius {
+                    Beside::On(Self::Rim { center, axis, radius })
+                } else {
+                    Beside::Within(inside)
+                }
             }
-            _ => None,
+            _ => Beside::Within(0.0),
         }
     }
 
