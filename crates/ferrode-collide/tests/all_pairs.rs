@@ -1,6 +1,5 @@
 //! All ordered pairs of all classes, planes, rays, meshes and heightfields included: none is missing, swapping turns the
-//! normals and keeps the rest, normals are unit vectors, and moving both shapes together changes nothing (of pairs that
-//! are solved by iteration: not the depth).
+//! normals and keeps the rest, normals are unit vectors, and moving both shapes together changes nothing.
 
 mod common;
 
@@ -11,17 +10,6 @@ use ferrode_math::{Pose, Quat, Vec3};
 use proptest::prelude::*;
 
 const SAME: f64 = 1e-9;
-/// The polytope's precision of depth on curved surfaces, in metres for bodies of about a metre.
-const ITERATED: f64 = 1e-6;
-
-/// Whether contacts of a pair come from iteration on curved surfaces. Its depth is good; places and normals are good to the
-/// root of that, and of several points as deep the last bit may choose. Polyhedra, balls and capsules are exact.
-fn iterates(a: &str, b: &str) -> bool {
-    let has = |list: &[&str]| list.contains(&a) || list.contains(&b);
-    has(&["cylinder", "ellipsoid", "cone"])
-        && !has(&["plane", "ray"])
-        && !(has(&["cylinder"]) && has(&["sphere"]))
-}
 
 /// Depth of the deepest contact; zero if there is none.
 fn deepest(list: &[GeomContact]) -> f64 {
@@ -111,12 +99,7 @@ proptest! {
                             c
                         })
                         .collect();
-                    let unmoved = if iterates(name_a, name_b) {
-                        (deepest(&ab) - deepest(&after)).abs() < ITERATED
-                    } else {
-                        as_sets(&ab, &after, same)
-                    };
-                    if !unmoved {
+                    if !as_sets(&ab, &after, same) {
                         faults.push(format!("moved {name_a} {name_b}\n{ab:?}\n{after:?}"));
                     }
                 }
@@ -144,8 +127,7 @@ proptest! {
                 let ((ma, qa), (mb, qb)) = (moved(a, &pa, &m), moved(b, &pb, &m));
                 let far = list(collide, (&ma, &qa), (&mb, &qb));
                 let both = near.is_empty() == far.is_empty() || deepest(&near).max(deepest(&far)) < 1e-7;
-                let precise = if iterates(name_a, name_b) { ITERATED } else { 1e-7 };
-                if !both || (deepest(&near) - deepest(&far)).abs() > precise {
+                if !both || (deepest(&near) - deepest(&far)).abs() > 1e-7 {
                     faults.push(format!("{name_a} {name_b}\n{near:?}\n{far:?}"));
                 }
             }

@@ -276,7 +276,7 @@ impl Part {
                 }
             }
             // Across an edge the faces at it are all that can be nearer.
-            (Self::Line { from, to, margin }, _) if margin == 0.0 => {
+            (Self::Line { from, to, margin: 0.0 }, _) => {
                 let q = body.support(d);
                 (d.dot(q - from) > slack)
                     .then(|| {
