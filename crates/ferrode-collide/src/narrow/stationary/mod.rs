@@ -21,7 +21,7 @@ mod part;
 use super::support::{Body, Vertex, difference};
 use super::unit::unit;
 use ferrode_math::{Vec3, plane_space};
-use part::{Beside, Bound, Part};
+use part::{Beside, Bound, ON_AXIS, Part};
 
 /// A direction whose neighbours all overlap more.
 #[derive(Clone, Copy, Debug)]
@@ -42,8 +42,6 @@ pub(super) struct Least {
 const STEPS: usize = 24;
 /// Furthest step, in radians.
 const FURTHEST: f64 = 0.3;
-/// Cosine of a direction and the axis of a disc from which they are one.
-const ON_AXIS: f64 = 1.0 - 1e-14;
 /// How often a step is cut to a quarter that would lead across a disc.
 const SHORTER: usize = 4;
 /// After a step no longer than this, in radians, another would change nothing but rounding.
@@ -66,21 +64,33 @@ enum Step {
 }
 
 /// Goes from the unit vector `m`, near the least overlap, to it; `found` are support points of the difference near there.
-/// `None` if that does not end at a direction whose neighbours overlap more.
+/// `None` if that does not end at a direction whose neighbours overlap more, and that overlaps by no more than `most`.
 pub(super) fn least_near(
     a: &Body<'_>,
     b: &Body<'_>,
-    mut m: Vec3,
+    m: Vec3,
     found: &[Vertex],
     scale: f64,
+    most: f64,
 ) -> Option<Least> {
     let mut points = [Vec3::ZERO; 3];
     let count = found.len().min(3);
-    let mut part = |body: &Body<'_>, of: fn(&Vertex) -> Vec3, d: Vec3| {
+    let mut part = |body: &Body<'_>, of: fn(&Vertex) -> Vec3, d: Vec3, discs: bool| {
         points.iter_mut().zip(found).for_each(|(p, v)| *p = of(v));
-        Part::through(body, &points[..count], d)
+        Part::through(body, &points[..count], d, discs)
     };
-    let (mut pa, mut pb) = (part(a, |v| v.a, m)?, part(b, |v| v.b, -m)?);
+    let (pa, pb) = (part(a, |v| v.a, m, false)?, part(b, |v| v.b, -m, false)?);
+    let discs = pa.may_be_disc(m) || pb.may_be_disc(-m);
+    let least = go_down(a, b, m, pa, pb, scale).filter(|l| l.depth <= most);
+    if least.is_some() || !discs {
+        return least;
+    }
+    let (pa, pb) = (part(a, |v| v.a, m, true)?, part(b, |v| v.b, -m, true)?);
+    go_down(a, b, m, pa, pb, scale).filter(|l| l.depth <= most)
+}
+
+/// From the unit vector `m` and the parts that face it to those where the overlap is least.
+fn go_down(a: &Body<'_>, b: &Body<'_>, mut m: Vec3, mut pa: Part, mut pb: Part, scale: f64) -> Option<Least> {
     let slack = 1e-15 * scale;
     // Whether the foot was found to lie beside a disc: then its rim is not left across it any more.
     let mut off_disc = false;
@@ -102,9 +112,9 @@ pub(super) fn least_near(
         let (mut la, mut lb) = (pa.left(a, next, m, slack), pb.left(b, -next, -m, slack));
         // On a face the other body has the furthest point, wherever that is.
         if is_flat(&pa) {
-            (pb, lb) = (Part::through(b, &[b.support(-next)], -next)?, None);
+            (pb, lb) = (Part::through(b, &[b.support(-next)], -next, false)?, None);
         } else if is_flat(&pb) {
-            (pa, la) = (Part::through(a, &[a.support(next)], next)?, None);
+            (pa, la) = (Part::through(a, &[a.support(next)], next, false)?, None);
         }
         if !settled {
             leaning = m;

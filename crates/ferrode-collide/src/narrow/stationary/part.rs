@@ -41,17 +41,20 @@ pub(super) enum Beside {
 
 /// Part of a line or face by which a point beside it still counts as on it: rounding, no more.
 const SHARE: f64 = 1e-9;
-/// Cosine of direction and axis from which a disc, rather than its rim, is looked at first.
-const ON_DISC: f64 = 0.98;
+/// Cosine of direction and axis from which a disc may be what is sought.
+pub(super) const ON_DISC: f64 = 0.98;
+/// Cosine of direction and axis from which they are one: then a rim has no point that looks that way.
+pub(super) const ON_AXIS: f64 = 1.0 - 1e-14;
 
 impl Part {
-    /// The part that has the given support points, and about which the unit vector `d` looks outward. `None` for a shape
-    /// of one's own.
-    pub fn through(body: &Body<'_>, points: &[Vec3], d: Vec3) -> Option<Self> {
+    /// The part that has the given support points, and about which the unit vector `d` looks outward; where that may be a
+    /// disc or its rim, the disc if `discs` says so. `None` for a shape of one's own.
+    pub fn through(body: &Body<'_>, points: &[Vec3], d: Vec3, discs: bool) -> Option<Self> {
         let u = body.axis(2);
         let up = |p: &&Vec3| u.dot(**p - body.center) > 0.0;
         let flat = |center: Vec3, axis: Vec3, radius: f64| {
-            if points.len() > 1 && axis.dot(d) > ON_DISC {
+            let along = axis.dot(d);
+            if points.len() > 1 && along > if discs { ON_DISC } else { ON_AXIS } {
                 Self::Disc { center, axis, radius }
             } else {
                 Self::Rim { center, axis, radius }
@@ -237,6 +240,11 @@ impl Part {
         let Self::Rim { axis, .. } = *self else { return false };
         let across = |d: Vec3| d - axis * axis.dot(d);
         axis.dot(d) > 0.0 && across(d).dot(across(before)) < 0.0
+    }
+
+    /// Whether it is a rim whose disc looks nearly along `d`.
+    pub fn may_be_disc(&self, d: Vec3) -> bool {
+        matches!(self, Self::Rim { axis, .. } if axis.dot(d) > ON_DISC)
     }
 
     /// For discs: the point of the rim that is nearest to a point of their plane, or beside it.
