@@ -47,8 +47,8 @@ pub(crate) fn gap(a: &Body<'_>, b: &Body<'_>, limit: f64) -> Gap {
     let mut found = gjk_from(a, b, limit, start, NEAR);
     for rest in [1e-6, EXACT, 0.0] {
         let Gap::Apart { between, simplex, .. } = &found else { break };
-        if let Some(l) =
-            between.normalized().and_then(|n| least_near(a, b, -n, &simplex.vertices[..simplex.count], scale))
+        let near = &simplex.vertices[..simplex.count];
+        if let Some(l) = between.normalized().and_then(|n| least_near(a, b, -n, near, scale, 0.0))
             && l.depth < 0.0
         {
             return Gap::Apart { a: l.a, b: l.b, between: l.normal * l.depth, simplex: *simplex };

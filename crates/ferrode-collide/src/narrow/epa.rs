@@ -77,13 +77,21 @@ pub(crate) fn epa(a: &Body<'_>, b: &Body<'_>, simplex: &Simplex) -> Option<Depth
     })
 }
 
-/// The least overlap near the normal of a face, whose support point is `next`.
-fn local(a: &Body<'_>, b: &Body<'_>, p: &Polytope, face: &Face, next: Vertex, scale: f64) -> Option<Least> {
+/// The least overlap near the normal of a face, whose support point is `next`, if it is no more than `most`.
+fn local(
+    a: &Body<'_>,
+    b: &Body<'_>,
+    p: &Polytope,
+    face: &Face,
+    next: Vertex,
+    scale: f64,
+    most: f64,
+) -> Option<Least> {
     let own = |body: &Body<'_>| matches!(body.core, Core::Custom(_));
     if own(a) || own(b) {
-        return descend(a, b, face.normal, next, scale);
+        return descend(a, b, face.normal, next, scale).filter(|l| l.depth <= most);
     }
-    least_near(a, b, face.normal, &face.v.map(|i| p.vertex(i)), scale)
+    least_near(a, b, face.normal, &face.v.map(|i| p.vertex(i)), scale, most)
 }
 
 fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut Polytope) -> Option<Depth> {
@@ -133,9 +141,7 @@ fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut 
         let mut added = next;
         if round && least.is_none() && descents < DESCENTS && reach - best.distance < NEAR * scale {
             descents += 1;
-            if let Some(l) = local(a, b, p, &best, next, scale)
-                && l.depth <= upper
-            {
+            if let Some(l) = local(a, b, p, &best, next, scale, upper) {
                 // The point that touches, unless the nearest face does not see it.
                 if best.normal.dot(l.w) > best.distance + tolerance {
                     added = Vertex { w: l.w, a: l.a, b: l.b };
@@ -155,7 +161,7 @@ fn expand(a: &Body<'_>, b: &Body<'_>, corners: [Vertex; 4], scale: f64, p: &mut 
     if least.is_none() && round {
         // The last face has the normal to the root of its distance's error.
         let at = difference(a, b, result.normal);
-        least = local(a, b, p, &result, at, scale).filter(|l| l.depth <= upper + tolerance);
+        least = local(a, b, p, &result, at, scale, upper + tolerance);
     }
     if let Some(l) = least {
         return Some(Depth { normal: l.normal, depth: l.depth.max(0.0), a: l.a, b: l.b });
