@@ -33,7 +33,9 @@ fn pose(size: f64) -> impl Strategy<Value = Pose> {
 
 /// The same contacts, but for those that only just touch: rounding decides whether they do.
 fn as_sets(a: &[GeomContact], b: &[GeomContact], same: impl Fn(&GeomContact, &GeomContact) -> bool) -> bool {
-    let within = |a: &[GeomContact], b: &[GeomContact]| a.iter().all(|x| x.point.depth < SAME || b.iter().any(|y| same(x, y)));
+    let within = |a: &[GeomContact], b: &[GeomContact]| {
+        a.iter().all(|x| x.point.depth < SAME || b.iter().any(|y| same(x, y)))
+    };
     within(a, b) && within(b, a)
 }
 
