@@ -29,10 +29,8 @@ fn cylinder_facet(radius: f64, half: f64, fc: &Frame, t: &Facet) -> Option<Facet
     }
     let v = t.corners.map(|p| p - fc.position);
     let u = fc.axis(2);
-    let reach = |d: Vec3| {
-        let c = d.dot(u);
-        c.abs() * half + radius * (1.0 - c * c).max(0.0).sqrt()
-    };
+    // The sine by the cross product: from a cosine near 1 it would be rounding's root.
+    let reach = |d: Vec3| d.dot(u).abs() * half + radius * u.cross(d).length();
     let mut best = LeastOverlap::new(v, t.normal, reach, SHORTEST);
     if best.overlap < 0.0 {
         return None;
