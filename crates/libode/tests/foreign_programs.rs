@@ -44,11 +44,21 @@ fn ompl_propagates_the_same_states() {
     compare("ompl_ode", "/usr/include/ompl-1.5/ompl/extensions/ode/OpenDESimpleSetup.h", &flags, 1e-9);
 }
 
-#[test]
-fn dart_finds_the_same_contacts() {
+fn compare_dart(name: &str) {
     if !Path::new("/usr/include/dart/external/ikfast/ikfast.h").exists() {
         return skip("no libdart-external-ikfast-dev");
     }
     let flags = ["-ldart", "-ldart-collision-ode", "-lode", "-lassimp", "-lfcl", "-lccd"];
-    compare("dart_ode", "/usr/include/dart/collision/ode/ode.hpp", &flags, 1e-9);
+    compare(name, "/usr/include/dart/collision/ode/ode.hpp", &flags, 1e-9);
+}
+
+#[test]
+fn dart_finds_the_same_contacts() {
+    compare_dart("dart_ode");
+}
+
+/// 1,000 steps of an arm that sweeps a table.
+#[test]
+fn dart_steps_the_same_robot() {
+    compare_dart("dart_robot");
 }

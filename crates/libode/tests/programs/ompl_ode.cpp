@@ -5,6 +5,7 @@
 #include <ompl/util/RandomNumbers.h>
 #include <ompl/util/Console.h>
 #include <ompl/base/terminationconditions/IterationTerminationCondition.h>
+#include <ompl/control/planners/kpiece/KPIECE1.h>
 #include <ompl/control/planners/rrt/RRT.h>
 #include <cstdio>
 namespace oc = ompl::control;
@@ -66,6 +67,18 @@ struct Goal : ob::GoalRegion {
     }
 };
 
+// Where the first box is.
+struct Places : ob::ProjectionEvaluator {
+    Places(const ob::StateSpacePtr &space) : ProjectionEvaluator(space) {}
+    unsigned int getDimension() const override { return 2; }
+    void defaultCellSizes() override { cellSizes_ = {0.2, 0.2}; }
+    void project(const ob::State *state, Eigen::Ref<Eigen::VectorXd> to) const override {
+        const double *p = state->as<oc::OpenDEStateSpace::StateType>()->getBodyPosition(0);
+        to[0] = p[0];
+        to[1] = p[1];
+    }
+};
+
 static void show(const char *name, const ob::State *state) {
     auto *s = state->as<oc::OpenDEStateSpace::StateType>();
     for (int i = 0; i < 2; ++i) {
@@ -112,6 +125,34 @@ int main() {
         auto status = setup.solve(limit);
         printf("solved %s, states %zu\n", status.asString().c_str(), setup.haveSolutionPath() ? setup.getSolutionPath().getStateCount() : 0);
         if (setup.haveSolutionPath()) show("end", setup.getSolutionPath().getStates().back());
+        // A planner that projects states, to an easy goal; the way it found is driven again, control by control.
+        stateSpace->writeState(start.get());
+        stateSpace->registerDefaultProjection(std::make_shared<Places>(stateSpace));
+        setup.clear();
+        setup.setStartState(start);
+        auto near = std::make_shared<Goal>(si);
+        near->setThreshold(1.2);
+        setup.setGoal(near);
+        auto kpiece = std::make_shared<oc::KPIECE1>(si);
+        kpiece->setProjectionEvaluator(std::make_shared<Places>(stateSpace));
+        setup.setPlanner(kpiece);
+        ob::IterationTerminationCondition more(3000);
+        ob::PlannerTerminationCondition enough = more;
+        status = setup.solve(enough);
+        printf("solved %s\n", status.asString().c_str());
+        if (setup.haveSolutionPath()) {
+            auto &path = setup.getSolutionPath();
+            printf("path of %zu states, %.9g seconds\n", path.getStateCount(), path.length());
+            si->copyState(from, path.getState(0));
+            for (std::size_t i = 0; i < path.getControlCount(); ++i) {
+                unsigned steps = std::lround(path.getControlDuration(i) / si->getPropagationStepSize());
+                si->propagate(from, path.getControl(i), steps, to);
+                printf("control %zu for %u steps\n", i, steps);
+                show("driven", to);
+                show("planned", path.getState(i + 1));
+                si->copyState(from, to);
+            }
+        }
         si->freeControl(control);
         si->freeState(from);
         si->freeState(to);
