@@ -2,7 +2,7 @@
 
 use crate::fault::export;
 use core::ffi::c_void;
-use core::ptr;
+use core::ptr::{self, NonNull};
 use core::sync::atomic::{AtomicPtr, Ordering};
 
 type Alloc = unsafe extern "C-unwind" fn(usize) -> *mut c_void;
@@ -107,6 +107,51 @@ pub unsafe extern "C-unwind" fn dFree(block: *mut c_void, size: usize) {
         // SAFETY: the caller's contract.
         None => unsafe { free(block) },
     }
+}
+
+/// Who takes back what the program's handler gave: the other handler as it was then, or the C library.
+#[derive(Clone, Copy, Debug)]
+pub struct Lender(Option<Free>);
+
+impl Lender {
+    /// Room for a `T` from the program's handler, if it has set one that has room.
+    pub fn room<T>() -> Option<(NonNull<T>, Self)> {
+        const { assert!(align_of::<T>() <= 16) };
+        let handler = alloc_handler()?;
+        let lender = Self(free_handler());
+        // SAFETY: the program's own function, called by its contract.
+        let room = NonNull::new(unsafe { handler(size_of::<T>()) }.cast::<T>())?;
+        if room.is_aligned() {
+            return Some((room, lender));
+        }
+        // SAFETY: just from the handler.
+        unsafe { lender.take_back(room.as_ptr()) };
+        None
+    }
+
+    /// Gives room back.
+    ///
+    /// # Safety
+    /// It came from [`Lender::room`] with this lender, and nothing is in it any more.
+    pub unsafe fn take_back<T>(self, room: *mut T) {
+        match self.0 {
+            // SAFETY: the program's own function, called by its contract.
+            Some(handler) => unsafe { handler(room.cast(), size_of::<T>()) },
+            // SAFETY: the caller's contract; without a handler of its own the program's blocks are the C library's.
+            None => unsafe { free(room.cast()) },
+        }
+    }
+}
+
+/// A block of zeros, of the program's handler if it has set one.
+pub fn zeros(size: usize) -> *mut c_void {
+    // SAFETY: the handler is the program's own.
+    let block = unsafe { dAlloc(size) };
+    if !block.is_null() {
+        // SAFETY: as large as was asked for.
+        unsafe { block.cast::<u8>().write_bytes(0, size) };
+    }
+    block
 }
 
 export! {

@@ -6,6 +6,7 @@
 
 use crate::fault::{Fault, Outcome, from_engine};
 use crate::mass::MassRecord;
+use crate::memory::Lender;
 use crate::real::{Real, Real4, Real12, mat3, matrix3, padded, quat, quaternion, vector};
 use crate::slab::{Handle, Link, Pool, Record, Tag};
 use core::cell::{Cell, RefCell};
@@ -47,6 +48,8 @@ pub struct WorldRecord {
     tag: Tag,
     /// The engine's world. During a moved callback it is the step's own reborrow.
     engine: Cell<Option<*mut World>>,
+    /// Whose memory the engine's world is in, if it is the program's.
+    lender: Cell<Option<Lender>>,
     /// The thread in which a step runs, 0 for none. For that thread, which only comes here from callbacks, the engine's state
     /// is the newer one, not the records'. Others must not be here; should one look all the same, as a program may that
     /// draws while it steps, it sees the records, not an engine at work.
@@ -123,8 +126,9 @@ impl<T> Default for Handle<T> {
 const DENSE_ROWS: usize = 100;
 
 impl WorldRecord {
-    /// A record for a new world.
+    /// A record for a new world. The program's memory handler may be called.
     pub fn create() -> &'static Self {
+        let room = Lender::room::<World>();
         let record = WORLDS.create();
         let mut world = World::new();
         // ODE's default for float; the engine has that for double.
@@ -134,7 +138,15 @@ impl WorldRecord {
         // Small islands by ODE's own method: sooner, and with ODE's choice among forces that the problem leaves open.
         let direct = DirectSettings { dense_rows: DENSE_ROWS, ..*world.direct() };
         world.set_direct(direct);
-        record.engine.set(Some(Box::into_raw(Box::new(world))));
+        record.lender.set(room.map(|(_, lender)| lender));
+        record.engine.set(Some(match room {
+            Some((room, _)) => {
+                // SAFETY: room for a world, aligned, nobody else's.
+                unsafe { room.write(world) };
+                room.as_ptr()
+            }
+            None => Box::into_raw(Box::new(world)),
+        }));
         record
     }
 
@@ -145,7 +157,7 @@ impl WorldRecord {
         let engine = self.engine.get();
         // A living record has a world; a dead one is never reached through a handle.
         let engine = engine.expect("a living world has an engine");
-        // SAFETY: the pointer is from Box::into_raw in `create`, or a reborrow that a step lends out while it waits for a
+        // SAFETY: the pointer is from `create`, or a reborrow that a step lends out while it waits for a
         // callback. A world is used by one thread at a time (the C interface's contract), `work` does not call out, so no
         // other reference is in use.
         work(unsafe { &mut *engine })
@@ -198,15 +210,18 @@ impl WorldRecord {
         });
     }
 
-    /// Destroys the world's engine; what is left of the record is the caller's to clear. During a step the engine is only
-    /// forgotten, since the step still runs on it.
-    pub fn destroy_engine(&self) {
-        if let Some(engine) = self.engine.take()
-            && !self.is_stepping()
-        {
-            // SAFETY: the pointer is from Box::into_raw, no step runs on it, and it is out of the record now.
-            drop(unsafe { Box::from_raw(engine) });
+    /// Destroys the world's engine; what is left of the record is the caller's to clear, as is the room that it was in, if
+    /// that is the program's. During a step the engine is only forgotten, since the step still runs on it.
+    pub fn destroy_engine(&self) -> Option<(*mut World, Lender)> {
+        let engine = self.engine.take().filter(|_| !self.is_stepping())?;
+        if let Some(lender) = self.lender.take() {
+            // SAFETY: written in `create`, no step runs on it, and it is out of the record now.
+            unsafe { engine.drop_in_place() };
+            return Some((engine, lender));
         }
+        // SAFETY: from Box::into_raw in `create`; the rest as above.
+        drop(unsafe { Box::from_raw(engine) });
+        None
     }
 }
 

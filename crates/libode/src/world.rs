@@ -1,6 +1,6 @@
 //! Worlds: creation, parameters, and what new bodies inherit.
 
-use crate::fault::{Outcome, export, from_engine, message};
+use crate::fault::{Outcome, export, export_calling, from_engine, message};
 use crate::geom::leave_dying_body;
 use crate::real::{OutVector, Real, f, r, vec3, vector3};
 use crate::record::{BodyId, BodyRecord, JointId, Required, WorldId, WorldRecord, handle_of};
@@ -72,16 +72,22 @@ fn destroy(world: &'static WorldRecord) -> usize {
         }
     }
     *world.listeners.borrow_mut() = Vec::new();
-    world.destroy_engine();
-    // Last, since the program's function may not come back.
+    let room = world.destroy_engine();
+    // Last, since the program's functions may not come back.
     world.settings.free_step_memory();
     WorldRecord::pool().destroy(world);
+    if let Some((room, lender)) = room {
+        // SAFETY: the lender's, and empty now.
+        unsafe { lender.take_back(room) };
+    }
     orphans
 }
 
-export! {
+export_calling! {
     fn dWorldCreate() -> WorldId { WorldId::of(WorldRecord::create()) }
+}
 
+export! {
     fn dWorldSetData(world: WorldId, data: *mut c_void) { world.get()?.data.set(data) }
     fn dWorldGetData(world: WorldId) -> *mut c_void { world.get()?.data.get().cast_mut() }
 

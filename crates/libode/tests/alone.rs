@@ -62,3 +62,8 @@ fn objects_may_be_destroyed_last_of_all() {
 fn worlds_that_come_and_go_leave_no_memory_behind() {
     check("many_worlds", "steady\n");
 }
+
+#[test]
+fn nothing_that_programs_do_makes_it_unsound() {
+    check("hostile", "faults were told\nfalls to -5.050000\nall was given back\n");
+}

@@ -65,8 +65,8 @@ fn class_of(number: c_int) -> Option<ClassRecord> {
 /// What only geoms of the program's classes, and wrappers, have.
 #[derive(Default)]
 pub struct ClassGeom {
-    /// The program's bytes, zero at first. Only their address is used here, since the program writes to them as it likes.
-    block: Cell<Option<*mut [u128]>>,
+    /// The program's bytes, zero at first, from its memory handler, and their number.
+    block: Cell<Option<(*mut c_void, usize)>>,
     /// The geom that a wrapper moves.
     inner: Cell<GeomId>,
     owns: Cell<bool>,
@@ -75,9 +75,9 @@ pub struct ClassGeom {
 
 impl ClassGeom {
     fn free(&self) {
-        if let Some(block) = self.block.take() {
-            // SAFETY: from Box::into_raw in `dCreateGeom`; taken, so given back once.
-            drop(unsafe { Box::from_raw(block) });
+        if let Some((block, size)) = self.block.take() {
+            // SAFETY: from `zeros` in `dCreateGeom`, with this size; taken, so given back once.
+            unsafe { crate::memory::dFree(block, size) };
         }
     }
 }
@@ -169,16 +169,10 @@ export! {
             Ok(FIRST_USER + registry.classes.len() as c_int - 1)
         })?
     }
-    fn dCreateGeom(class: c_int) -> GeomId {
-        let bytes = class_of(class).ok_or(Fault::user("not a custom class"))?.bytes as usize;
-        let handle = GeomRecord::create(class, None, None, GeomId::NULL)?;
-        handle.get()?.own.block.set(Some(Box::into_raw(vec![0; bytes.div_ceil(size_of::<u128>())].into())));
-        handle
-    }
     fn dGeomGetClassData(geom: GeomId) -> *mut c_void {
         let custom = |geom: &&GeomRecord| class_of(geom.class.get()).is_some();
         let geom = geom.live().filter(custom).ok_or(Fault::user("not a custom class"))?;
-        geom.own.block.get().map_or(core::ptr::null_mut(), <*mut [u128]>::cast)
+        geom.own.block.get().map_or(core::ptr::null_mut(), |(block, _)| block)
     }
     fn dSetColliderOverride(i: c_int, j: c_int, collider: Option<Collider>) {
         let place = |n: c_int| usize::try_from(n).ok().filter(|n| *n < CLASSES).ok_or(Fault::ARGUMENT);
@@ -199,6 +193,13 @@ export! {
 }
 
 export_calling! {
+    fn dCreateGeom(class: c_int) -> GeomId {
+        let bytes = class_of(class).ok_or(Fault::user("not a custom class"))?.bytes as usize;
+        let block = crate::memory::zeros(bytes);
+        let handle = GeomRecord::create(class, None, None, GeomId::NULL)?;
+        handle.get()?.own.block.set(Some((block, bytes)));
+        handle
+    }
     fn dGeomTransformSetGeom(geom: GeomId, inner: GeomId) {
         let geom = transform(geom)?;
         if let Some(old) = geom.inner().filter(|_| geom.own.owns.get()) {
