@@ -2,9 +2,9 @@
 
 use arbitrary::{Arbitrary, Result, Unstructured};
 use ferrode_collide::{
-    Capsule, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Heightfield, Plane, Ray, Shape, Sphere, TriMesh,
+    Capsule, Compound, Cone, Contacts, Convex, Custom, CustomShape, Frame, Cuboid, Cylinder, Ellipsoid, Heightfield, Plane, Ray, Shape, Sphere, TriMesh,
 };
-use ferrode_math::{Pose, Quat, Vec3};
+use ferrode_math::{Aabb, Pose, Quat, Vec3};
 
 /// A number: mostly of a few metres in steps of a millimetre or so, sometimes any bits.
 pub fn number(u: &mut Unstructured<'_>) -> Result<f64> {
@@ -62,9 +62,71 @@ pub fn field(u: &mut Unstructured<'_>) -> Result<Option<Heightfield>> {
     Ok(field.ok().map(|f| if u8::arbitrary(u).unwrap_or(0) & 1 == 1 { f.wrapped() } else { f }))
 }
 
+/// A double pyramid, known by its support function alone.
+#[derive(Debug)]
+struct Pyramids(Vec3);
+
+impl CustomShape for Pyramids {
+    fn aabb(&self, frame: &Frame) -> Aabb {
+        let reach = Vec3::splat(self.0.length());
+        Aabb::new(frame.position - reach, frame.position + reach)
+    }
+
+    fn collide(&self, _: &Frame, _: &Shape, _: &Frame, _: &mut Contacts<'_>) -> bool {
+        false
+    }
+
+    fn support(&self, d: Vec3) -> Option<Vec3> {
+        let along = d.component_mul(self.0);
+        let mut best = 0;
+        for i in 1..3 {
+            if along[i].abs() > along[best].abs() {
+                best = i;
+            }
+        }
+        let mut tip = Vec3::ZERO;
+        tip[best] = if along[best] < 0.0 { -self.0[best] } else { self.0[best] };
+        Some(tip)
+    }
+}
+
+/// A ball known by the depth of points, and by its contacts with balls.
+#[derive(Debug)]
+struct Orb(f64);
+
+impl CustomShape for Orb {
+    fn aabb(&self, frame: &Frame) -> Aabb {
+        Aabb::new(frame.position - Vec3::splat(self.0), frame.position + Vec3::splat(self.0))
+    }
+
+    fn collide(&self, frame: &Frame, other: &Shape, at: &Frame, out: &mut Contacts<'_>) -> bool {
+        let Shape::Sphere(ball) = other else { return false };
+        let away = frame.position - at.position;
+        let depth = ball.radius() + self.0 - away.length();
+        if depth >= 0.0 {
+            out.push(at.position, away.normalized_or(Vec3::Z), depth);
+        }
+        true
+    }
+
+    fn point_depth(&self, frame: &Frame, point: Vec3) -> Option<f64> {
+        Some(self.0 - (point - frame.position).length())
+    }
+}
+
+/// Up to four shapes as one, unless the numbers of one are refused.
+pub fn compound(u: &mut Unstructured<'_>) -> Result<Option<Compound>> {
+    let mut parts = Vec::new();
+    for _ in 0..u.int_in_range(1..=4)? {
+        let Some(part) = shape(u)? else { return Ok(None) };
+        parts.push((part, pose(u)?));
+    }
+    Ok(Compound::new(parts).ok())
+}
+
 /// A shape of any kind, unless its numbers are refused.
 pub fn shape(u: &mut Unstructured<'_>) -> Result<Option<Shape>> {
-    Ok(match u.int_in_range(0..=10)? {
+    Ok(match u.int_in_range(0..=13)? {
         0 => Sphere::new(size(u)?).ok().map(Shape::from),
         1 => Cuboid::new(sizes(u)?).ok().map(Shape::from),
         2 => Capsule::new(size(u)?, size(u)?).ok().map(Shape::from),
@@ -75,6 +137,11 @@ pub fn shape(u: &mut Unstructured<'_>) -> Result<Option<Shape>> {
         7 => mesh(u)?.map(Shape::from),
         8 => Ellipsoid::new(sizes(u)?).ok().map(Shape::from),
         9 => Cone::new(size(u)?, size(u)?).ok().map(Shape::from),
+        10 => compound(u)?.map(Shape::from),
+        11 => Some(sizes(u)?)
+            .filter(|s| s.abs_max() <= 1e100)
+            .map(|s| Custom::new(Pyramids(s.abs())).into()),
+        12 => Some(size(u)?).filter(|r| (0.0..=1e100).contains(r)).map(|r| Custom::new(Orb(r)).into()),
         _ => field(u)?.map(Shape::from),
     })
 }

@@ -131,4 +131,4 @@ macro_rules! into_shape {
     )*};
 }
 
-into_shape!(Sphere Cuboid Capsule Cylinder Plane Ray Convex TriMesh Ellipsoid Cone Heightfield Custom);
+into_shape!(Sphere Cuboid Capsule Cylinder Plane Ray Convex TriMesh Ellipsoid Cone Heightfield Custom Compound);

@@ -46,6 +46,6 @@ pub use query::{
     ClosestPoint, Queries, RayHit, ShapeCastHit, ShapeRayHit, closest_point, point_depth, ray_cast,
 };
 pub use shape::{
-    Capsule, Cone, Convex, Cuboid, Custom, CustomShape, Cylinder, Ellipsoid, Heightfield, Plane, Ray, Shape,
-    ShapeError, ShapeKind, Sphere, TriMesh,
+    Capsule, Compound, Cone, Convex, Cuboid, Custom, CustomShape, Cylinder, Ellipsoid, Heightfield, Plane,
+    Ray, Shape, ShapeError, ShapeKind, Sphere, TriMesh,
 };

@@ -116,7 +116,8 @@ impl BodyBuilder {
     }
 }
 
-/// Mass properties of a shape of the given density (kg/m³), about its own origin.
+/// Mass properties of a shape of the given density (kg/m³), about its own origin; of a compound the sum of its parts', though they
+/// overlap.
 ///
 /// ```
 /// use ferrode::{Convex, mass_of, prelude::*};
@@ -150,6 +151,15 @@ pub fn mass_of(shape: &Shape, density: f64) -> Result<Mass, Error> {
             Mass::trimesh(density, s.points(), &triangles)?
         }
         Shape::TriMesh(s) => Mass::trimesh(density, s.vertices(), s.triangles())?,
+        Shape::Compound(s) => {
+            let mut total: Option<Mass> = None;
+            for (part, pose) in s.parts() {
+                let mass =
+                    mass_of(part, density)?.rotate(pose.rotation.to_matrix())?.translate(pose.position)?;
+                total = Some(total.map_or(mass, |sum| sum + mass));
+            }
+            total.unwrap_or_default()
+        }
         Shape::Heightfield(_) => return Err(Error::NoVolume { shape: "heightfield" }),
         Shape::Plane(_) => return Err(Error::NoVolume { shape: "plane" }),
         Shape::Ray(_) => return Err(Error::NoVolume { shape: "ray" }),

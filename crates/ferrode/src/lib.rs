@@ -30,9 +30,9 @@ pub use energy::Energy;
 pub use error::Error;
 pub use events::ContactEvent;
 pub use ferrode_collide::{
-    Capsule, ClosestPoint, CollideOptions, Colliders, Cone, Convex, Cuboid, Cylinder, Ellipsoid, Geom,
-    GeomContact, GeomKey, Heightfield, Plane, Ray, RayHit, Shape, ShapeCastHit, SpaceKey, SpaceKind, Sphere,
-    TriMesh,
+    Capsule, ClosestPoint, CollideOptions, Colliders, Compound, Cone, Convex, Cuboid, Cylinder, Ellipsoid,
+    Geom, GeomContact, GeomKey, Heightfield, Plane, Ray, RayHit, Shape, ShapeCastHit, SpaceKey, SpaceKind,
+    Sphere, TriMesh,
 };
 pub use ferrode_dynamics::{
     AMotor, AMotorMode, AutoDisable, AxisFrame, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping,

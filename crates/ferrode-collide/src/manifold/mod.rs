@@ -22,7 +22,7 @@
 //! | two convex shapes | GJK while they are apart, EPA for the least overlap; then the faces or edges that face each other, clipped |
 //! | convex shape, plane | corners below the plane |
 //! | convex shape, mesh or heightfield | as two convex shapes, triangle by triangle; a normal counts only if the neighbours across the edge allow it (no ghost hits); points of one normal form one manifold |
-//! | mesh, mesh; custom shapes | contacts of [`collide`](crate::narrow::collide()), grouped by normal |
+//! | mesh, mesh; custom shapes; compounds | contacts of [`collide`](crate::narrow::collide()), grouped by normal |
 
 mod boxes;
 mod candidates;
@@ -266,7 +266,9 @@ impl Axis {
 
 /// Whether a pair can have several manifolds: one of the shapes is not convex, or not known to be.
 pub fn is_concave(a: &Shape, b: &Shape) -> bool {
-    let concave = |s: &Shape| matches!(s, Shape::TriMesh(_) | Shape::Heightfield(_) | Shape::Custom(_));
+    let concave = |s: &Shape| {
+        matches!(s, Shape::TriMesh(_) | Shape::Heightfield(_) | Shape::Custom(_) | Shape::Compound(_))
+    };
     concave(a) || concave(b)
 }
 

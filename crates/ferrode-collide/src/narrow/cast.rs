@@ -1,5 +1,6 @@
 //! Where a moving shape first touches another.
 
+use super::compound::compound_cast;
 use super::custom::{is_marched, march};
 use super::distance::{body_distance, plane_distance};
 use super::field_cells::FAR;
@@ -180,7 +181,7 @@ impl CastHit {
     }
 
     /// Whether this hit is earlier than the other, or deeper at the start.
-    fn before(&self, other: Option<Self>) -> bool {
+    pub(super) fn before(&self, other: Option<Self>) -> bool {
         other.is_none_or(|b| {
             self.fraction < b.fraction || (self.fraction == b.fraction && self.depth > b.depth)
         })
@@ -205,6 +206,8 @@ pub fn shape_cast(a: (&Shape, &Frame), path: Vec3, b: (&Shape, &Frame)) -> Optio
         Some(CastHit { normal: -hit.normal, position: hit.position + path * hit.fraction, ..hit })
     };
     match (sa, sb) {
+        (Shape::Compound(compound), _) => compound_cast(compound, fa, path, b),
+        (_, Shape::Compound(_)) => turned(),
         (Shape::Plane(_), Shape::Plane(_)) => None,
         _ if is_marched(sa, sb) => march(a, path, b),
         (Shape::Heightfield(_), Shape::Plane(_)) => {

@@ -288,14 +288,20 @@ const PAIRS: [[Option<Collider>; KINDS]; KINDS] = [
     ],
 ];
 
-/// The matrix with a row and a column for custom shapes, in rows of a power of two: it is looked up at every call.
+/// The matrix with rows and columns for custom shapes and compounds, in rows of a power of two: it is looked up at every call.
 static TABLE: [[Option<Collider>; 16]; 16] = {
     let mut table = [[NONE; 16]; 16];
     let mut i = 0;
-    while i <= KINDS {
+    while i <= KINDS + 1 {
         let mut j = 0;
-        while j <= KINDS {
-            table[i][j] = if i == KINDS || j == KINDS { Some(run_custom as Collider) } else { PAIRS[i][j] };
+        while j <= KINDS + 1 {
+            table[i][j] = if i > KINDS || j > KINDS {
+                Some(run_compound as Collider)
+            } else if i == KINDS || j == KINDS {
+                Some(run_custom as Collider)
+            } else {
+                PAIRS[i][j]
+            };
             j += 1;
         }
         i += 1;
@@ -303,7 +309,7 @@ static TABLE: [[Option<Collider>; 16]; 16] = {
     table
 };
 
-const _: () = assert!(ShapeKind::Custom as usize == KINDS);
+const _: () = assert!(ShapeKind::Custom as usize == KINDS && ShapeKind::Compound as usize == KINDS + 1);
 
 #[inline(always)]
 fn pair(a: ShapeKind, b: ShapeKind) -> Option<Collider> {
@@ -321,6 +327,23 @@ fn run_custom(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'
         && custom.get().collide(fb, a, fa, out)
     {
         out.swap();
+    }
+}
+
+/// The parts of the first compound, then, pair by pair, those of the second.
+fn run_compound(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    if let Shape::Compound(compound) = a {
+        compound_shape(compound, fa, b, fb, out);
+    } else if let Shape::Compound(compound) = b {
+        compound_shape(compound, fb, a, fa, out);
+        out.swap();
+    }
+}
+
+/// As [`collide_frames`], into a list begun elsewhere.
+pub(super) fn collide_in(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
+    if let Some(collider) = pair(a.kind(), b.kind()) {
+        collider(a, fa, b, fb, out);
     }
 }
 

@@ -1,5 +1,6 @@
 //! How far two shapes are apart.
 
+use super::compound::compound_distance;
 use super::convex::{gap, touch};
 use super::custom::own_distance;
 use super::gjk::Gap;
@@ -42,6 +43,8 @@ pub fn distance_frames(a: (&Shape, &Frame), b: (&Shape, &Frame)) -> Option<Dista
         }
     }
     match (sa, sb) {
+        (Shape::Compound(compound), _) => compound_distance(compound, fa, b),
+        (_, Shape::Compound(compound)) => compound_distance(compound, fb, a).map(Distance::swapped),
         (Shape::Plane(_), Shape::Plane(_)) => None,
         (Shape::TriMesh(mesh), Shape::Plane(p)) => vertices_plane_distance(mesh.vertices(), fa, p),
         (Shape::Heightfield(field), Shape::Plane(p)) => {

@@ -1,6 +1,7 @@
 //! Contacts chosen so that bodies lie still and slide freely.
 
-use super::dispatch::collide_frames;
+use super::compound::{Way, parts_with};
+use super::dispatch::collide_in;
 use super::{body_heightfield, body_trimesh, convex_bodies, heightfield_shape};
 use crate::{CollideOptions, Contacts, Frame, GeomContact, Shape};
 use ferrode_math::Pose;
@@ -36,21 +37,30 @@ pub fn steady_frames(
         return 0;
     }
     let mut list = Contacts::new(out, options);
+    steady_in(sa, fa, sb, fb, &mut list);
+    list.finish();
+    list.len()
+}
+
+/// As [`steady_frames`], into a list begun elsewhere.
+pub(super) fn steady_in(sa: &Shape, fa: &Frame, sb: &Shape, fb: &Frame, list: &mut Contacts<'_>) {
     match (sa, sb) {
+        (Shape::Compound(compound), other) => parts_with(compound, fa, other, fb, Way::Steady, list),
+        (other, Shape::Compound(compound)) => {
+            parts_with(compound, fb, other, fa, Way::Steady, list);
+            list.swap();
+        }
         (Shape::Capsule(_), Shape::Cuboid(_)) | (Shape::Cuboid(_), Shape::Capsule(_)) => {
-            convex_bodies(sa, fa, sb, fb, &mut list);
-            list.len()
+            convex_bodies(sa, fa, sb, fb, list);
         }
         (body, Shape::TriMesh(_) | Shape::Heightfield(_)) if is_body(body) => {
-            body_surface(sa, fa, sb, fb, &mut list);
-            list.len()
+            body_surface(sa, fa, sb, fb, list);
         }
         (Shape::TriMesh(_) | Shape::Heightfield(_), body) if is_body(body) => {
-            body_surface(sb, fb, sa, fa, &mut list);
+            body_surface(sb, fb, sa, fa, list);
             list.swap();
-            list.len()
         }
-        _ => collide_frames(a, b, options, out),
+        _ => collide_in(sa, fa, sb, fb, list),
     }
 }
 

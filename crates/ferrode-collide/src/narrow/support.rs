@@ -58,7 +58,11 @@ impl<'a> Body<'a> {
                 }
                 Self::new(Core::Custom(own), 0.0, most.length(), frame, origin)
             }
-            Shape::Plane(_) | Shape::Ray(_) | Shape::TriMesh(_) | Shape::Heightfield(_) => return None,
+            Shape::Plane(_)
+            | Shape::Ray(_)
+            | Shape::TriMesh(_)
+            | Shape::Heightfield(_)
+            | Shape::Compound(_) => return None,
         })
     }
 

@@ -1,4 +1,5 @@
 use super::{Queries, better};
+use crate::shape::within;
 use crate::space::Probe;
 use crate::{
     CollideOptions, ColliderError, Colliders, Frame, Geom, GeomKey, Ray, Shape, SpaceKey, Sphere, TriMesh,
@@ -21,6 +22,12 @@ pub struct ClosestPoint {
 /// [support function](crate::CustomShape::support) nor tell [distances](crate::CustomShape::distance) or
 /// [depths](crate::CustomShape::point_depth).
 pub fn closest_point(shape: &Shape, frame: &Frame, point: Vec3) -> Option<ClosestPoint> {
+    if let Shape::Compound(compound) = shape {
+        // Of the parts that contain the point, the deepest.
+        let each = (0..compound.len() as u32).map(|i| compound.part(i));
+        let found = each.filter_map(|(part, at)| closest_point(part, &within(frame, at), point));
+        return found.min_by(|a, b| a.distance.total_cmp(&b.distance));
+    }
     let speck = Shape::from(Sphere::new(0.0).ok()?);
     let at = Frame::new(point, Mat3::IDENTITY);
     let d = narrow::distance_frames((&speck, &at), (shape, frame))?;
@@ -100,7 +107,7 @@ impl Colliders {
 
 /// Depth of a point within a shape: the least distance to its surface; outside, minus the distance. A mesh counts as
 /// closed; what is straight below a heightfield is within it, down to the bottom of its box (its thickness below the lowest
-/// sample), which is no surface. `None` for rays, and for shapes of one's own that cannot tell.
+/// sample), which is no surface; of a compound the part that contains the point most deeply counts. `None` for rays, and for shapes of one's own that cannot tell.
 pub fn point_depth(shape: &Shape, frame: &Frame, point: Vec3) -> Option<f64> {
     let local = frame.point_to_local(point);
     Some(match shape {
@@ -133,6 +140,11 @@ pub fn point_depth(shape: &Shape, frame: &Frame, point: Vec3) -> Option<f64> {
             if depth >= 0.0 { depth } else { -closest_point(shape, frame, point)?.distance }
         }
         Shape::Ray(_) => return None,
+        Shape::Compound(compound) => {
+            let each = (0..compound.len() as u32).map(|i| compound.part(i));
+            let depths = each.filter_map(|(part, at)| point_depth(part, &within(frame, at), point));
+            depths.max_by(f64::total_cmp)?
+        }
         Shape::Custom(s) => match s.get().point_depth(frame, point) {
             Some(depth) => depth,
             None => -closest_point(shape, frame, point)?.distance,

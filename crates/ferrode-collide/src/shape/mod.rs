@@ -1,6 +1,7 @@
 //! What geoms are made of.
 
 mod capsule;
+mod compound;
 mod cone;
 mod convex;
 mod cuboid;
@@ -15,6 +16,8 @@ mod sphere;
 mod trimesh;
 
 pub use capsule::Capsule;
+pub use compound::Compound;
+pub(crate) use compound::{seen_from, within};
 pub use cone::Cone;
 pub use convex::Convex;
 pub use cuboid::Cuboid;
@@ -61,6 +64,8 @@ pub enum Shape {
     Heightfield(Heightfield),
     /// A kind of one's own.
     Custom(Custom),
+    /// Several shapes as one.
+    Compound(Compound),
 }
 
 /// The kind of a shape: its row and column in the pair matrix.
@@ -91,6 +96,8 @@ pub enum ShapeKind {
     Heightfield,
     /// [`Custom`]: pairs with it are not in the matrix.
     Custom,
+    /// [`Compound`]: pairs with it are those of its parts.
+    Compound,
 }
 
 impl Shape {
@@ -109,6 +116,7 @@ impl Shape {
             Self::Cone(_) => ShapeKind::Cone,
             Self::Heightfield(_) => ShapeKind::Heightfield,
             Self::Custom(_) => ShapeKind::Custom,
+            Self::Compound(_) => ShapeKind::Compound,
         }
     }
 
@@ -132,6 +140,7 @@ impl Shape {
             Self::Cone(s) => s.aabb(frame),
             Self::Heightfield(s) => s.aabb(frame),
             Self::Custom(s) => s.get().aabb(frame),
+            Self::Compound(s) => s.aabb(frame),
         }
     }
 
@@ -147,6 +156,7 @@ impl Shape {
             Self::Ellipsoid(s) => s.reach(),
             Self::Cone(s) => s.reach(),
             Self::Convex(s) => s.reach(),
+            Self::Compound(s) => s.reach(),
             Self::TriMesh(_) | Self::Plane(_) | Self::Ray(_) | Self::Heightfield(_) | Self::Custom(_) => {
                 f64::INFINITY
             }
@@ -167,6 +177,7 @@ impl Shape {
             Self::Ellipsoid(s) => s.volume(),
             Self::Cone(s) => s.volume(),
             Self::Custom(s) => s.get().volume(),
+            Self::Compound(s) => s.volume(),
         }
     }
 

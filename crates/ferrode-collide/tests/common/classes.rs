@@ -1,7 +1,7 @@
 //! One shape of each class.
 
 use ferrode_collide::*;
-use ferrode_math::{Pose, Vec3};
+use ferrode_math::{Pose, Quat, Vec3};
 
 fn tetrahedron() -> TriMesh {
     let corners = vec![
@@ -11,6 +11,17 @@ fn tetrahedron() -> TriMesh {
         Vec3::new(-0.5, -0.5, 0.5),
     ];
     TriMesh::new(corners, vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]).unwrap()
+}
+
+/// A cylinder and a box across its end.
+fn compound() -> Shape {
+    let turn = Quat::from_axis_angle(Vec3::new(0.3, 1.0, 0.2), 0.7);
+    Compound::new([
+        (Cylinder::new(0.2, 0.8).unwrap().into(), Pose::from_position(Vec3::new(0.0, 0.1, -0.1))),
+        (Cuboid::new(Vec3::new(0.9, 0.3, 0.2)).unwrap().into(), Pose::new(Vec3::new(0.1, 0.0, 0.35), turn)),
+    ])
+    .unwrap()
+    .into()
 }
 
 /// One of each class.
@@ -34,6 +45,7 @@ pub fn classes() -> Vec<(&'static str, Shape)> {
         ("heightfield", Heightfield::new(3.0, 3.0, 7, 7, heights, 1.0).unwrap().into()),
         ("ellipsoid", Ellipsoid::new(Vec3::new(0.6, 0.4, 0.3)).unwrap().into()),
         ("cone", Cone::new(0.4, 0.9).unwrap().into()),
+        ("compound", compound()),
     ]
 }
 
