@@ -31,7 +31,7 @@ pub struct Painter {
     /// lower); `None` for none.
     pub floor: Option<f64>,
     colors: BTreeMap<BodyKey, Color>,
-    meshes: BTreeMap<(GeomKey, u32), Arc<Mesh>>,
+    meshes: BTreeMap<GeomKey, Arc<Mesh>>,
     islands: BTreeMap<BodyKey, usize>,
 }
 
@@ -105,7 +105,7 @@ impl Painter {
             let Ok(geom) = world.geom(info.key) else { continue };
             let color = self.color(world, info.body);
             grounded |= matches!(geom.shape(), Shape::Plane(_) | Shape::Heightfield(_));
-            self.shape((info.key, 0), geom.shape(), geom.pose(), Paint::from(color), scene);
+            self.shape(info.key, geom.shape(), geom.pose(), Paint::from(color), scene);
         }
         if let (Some(height), false) = (self.floor, grounded) {
             // It must not hide what comes down to it.
@@ -115,7 +115,7 @@ impl Painter {
         }
     }
 
-    fn shape(&mut self, key: (GeomKey, u32), shape: &Shape, pose: &Pose, paint: Paint, scene: &mut Scene) {
+    fn shape(&mut self, key: GeomKey, shape: &Shape, pose: &Pose, paint: Paint, scene: &mut Scene) {
         match shape {
             Shape::Sphere(s) => scene.sphere(pose, s.radius(), paint.with_pattern(Pattern::Octants)),
             Shape::Cuboid(s) => scene.cuboid(pose, s.sides(), paint),
@@ -133,11 +133,6 @@ impl Painter {
                 let end = pose.transform_point(Vec3::new(0.0, 0.0, s.length()));
                 scene.line(pose.position, end, 2.0, paint.color, ferrode_render::Layer::World);
             }
-            Shape::Compound(s) => {
-                for (i, (part, at)) in s.parts().enumerate() {
-                    self.shape((key.0, i as u32), part, &(*pose * *at), paint, scene);
-                }
-            }
             _ => {
                 let Some(mesh) = self.mesh(key, shape) else { return };
                 scene.mesh(pose, &mesh, Vec3::splat(1.0), paint);
@@ -145,7 +140,7 @@ impl Painter {
         }
     }
 
-    fn mesh(&mut self, key: (GeomKey, u32), shape: &Shape) -> Option<Arc<Mesh>> {
+    fn mesh(&mut self, key: GeomKey, shape: &Shape) -> Option<Arc<Mesh>> {
         if let Some(mesh) = self.meshes.get(&key) {
             return Some(Arc::clone(mesh));
         }
