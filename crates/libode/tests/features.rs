@@ -10,35 +10,59 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
 use support::{
-    build_folder, differences, here, include, link_library, programs, run, scratch, skip, succeed,
+    agree, build_folder, differences, here, include, link_library, programs, run, scratch, skip, succeed,
 };
 
 /// Relative above 1: seven digits of `float` at the edge, and what a stiff joint makes of the last.
 const TOLERANCE: f64 = 1e-4;
 
-/// Lines that may differ by more, with the reason.
-const EXCEPTIONS: [(&str, usize, &str); 8] = [
-    (
-        "game",
-        29,
-        "chaos: a car, dolls and falling boxes make more of the last digit of float with each touch",
-    ),
-    ("handlers", 3, "tells the precision"),
+/// Lines that may differ by more: program, how the line begins, by how much, why.
+const EXCEPTIONS: [(&str, &str, f64, &str); 15] = [
+    // A car, dolls and falling boxes make more of the last digit of float with each touch; at the end, after 240 steps, it
+    // has become 3e-3. A few contacts come or go a step earlier, and with them random draws.
+    ("game", "doll.", 1e-2, "chaos"),
+    ("game", "feedback", 3e-2, "chaos"),
+    ("game", "touched", 1e-2, "chaos: contacts of all steps"),
+    ("game", "seed", f64::INFINITY, "chaos: as many draws as rows"),
+    // Bricks that a ball has hit.
+    ("walls", "brick", 2e-2, "chaos"),
+    ("walls", "ball", 1e-2, "chaos"),
+    ("walls", "contacts", 0.1, "chaos: contacts of all steps"),
     (
         "joints_a",
-        2,
-        "a force: positions given as float are 6e-8 off, and that counts by the square of the step",
+        "f",
+        1e-3,
+        "positions given as float are 6e-8 off: 2e-4 N at 2 kg, ERP 0.2 and steps of 0.01 s",
     ),
-    ("joints_b", 4, "chain drive: rounding decides at the first step which side of the chain pulls"),
-    ("rotations", 2, "a vector too small for float"),
-    (
-        "shared_data",
-        8,
-        "bodies that touch a mesh exactly at its edges: the last digit decides which triangles count",
-    ),
-    ("walls", 15, "chaos: falling bricks"),
-    ("world_sleep", 4, "a sum of steps of float reaches a time one step later"),
+    // Before the chain's first step both sides are equally tight: rounding decides which one pulls, and the points where it
+    // leaves the wheels are mirrored.
+    ("joints_b", "dJointGetTransmissionContactPoint", 1.25, "two radii"),
+    ("joints_b", "a.angular", 2e-3, "the chain pulls on the other side"),
+    ("joints_b", "b.angular", 2e-3, "the chain pulls on the other side"),
+    ("handlers", "ODE ", f64::INFINITY, "the configuration tells the precision"),
+    ("handlers", "dCheckConfiguration", f64::INFINITY, "the configuration tells the precision"),
+    ("rotations", "dSafeNormalize3", f64::INFINITY, "a vector of 1e-200 is zero in float"),
+    ("rotations", "tiny", f64::INFINITY, "a vector of 1e-200 is zero in float"),
 ];
+
+/// What was printed, with lines that may differ as they should be.
+fn excused(name: &str, wanted: &str, got: &str) -> (String, usize) {
+    let (mut text, mut excused) = (String::new(), 0);
+    let mut should = wanted.lines();
+    for line in got.lines() {
+        let should = should.next().unwrap_or_default();
+        let may = |exception: &&(&str, &str, f64, &str)| {
+            exception.0 == name
+                && should.starts_with(exception.1)
+                && (exception.2.is_infinite() || agree(should, line, exception.2))
+        };
+        let differs = !agree(should, line, TOLERANCE) && EXCEPTIONS.iter().find(may).is_some();
+        excused += usize::from(differs);
+        text += if differs { should } else { line };
+        text.push('\n');
+    }
+    (text, excused)
+}
 
 /// Builds the library with features and gives a folder with it. The builds share what they have in common.
 fn build(features: &str) -> PathBuf {
@@ -77,22 +101,19 @@ fn single_precision_agrees_with_double() {
     let same = here().join("tests/headers/same_cfm.h");
     let same = same.to_str().expect("a path");
     let mut faults = Vec::new();
-    let mut lines = 0;
+    let (mut lines, mut excepted) = (0, 0);
     for source in programs() {
         let name = source.file_stem().expect("a name").to_str().expect("a name");
         let Some(wanted) = printed(&source, &["-include", same], &double) else { return skip("no gcc") };
         let Some(got) = printed(&source, &["-DdSINGLE", "-include", same], &single) else {
             return skip("no gcc");
         };
-        let differ = differences(name, &wanted, &got, TOLERANCE);
+        let (got, excused) = excused(name, &wanted, &got);
+        faults.extend(differences(name, &wanted, &got, TOLERANCE));
         lines += wanted.lines().count();
-        let excepted =
-            EXCEPTIONS.iter().find(|exception| exception.0 == name).map_or(0, |exception| exception.1);
-        if differ.len() > excepted {
-            faults.extend(differ);
-        }
+        excepted += excused;
     }
-    println!("{lines} lines, {} excepted", EXCEPTIONS.iter().map(|exception| exception.1).sum::<usize>());
+    println!("{lines} lines, {excepted} by larger tolerances");
     assert!(faults.is_empty(), "{} lines differ:\n{}", faults.len(), faults.join("\n"));
 
     let features = here().join("tests/headers/features.c");

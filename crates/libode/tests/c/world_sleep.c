@@ -10,7 +10,8 @@ static int sleeps(dReal speed, dReal turn) {
     dBodySetAngularVel(b, turn, 0, 0);
     int steps = 0;
     while (dBodyIsEnabled(b) && steps < 100) {
-        dWorldStep(w, 0.02);
+        /* Steps and times are sums of powers of two: they come out the same in float. */
+        dWorldStep(w, 0.015625);
         if (++steps == 20) dBodySetLinearVel(b, 0, 0, 0);
     }
     dBodyDestroy(b);
@@ -27,7 +28,7 @@ int main(void) {
     dWorldSetAutoDisableSteps(w, 4);
     I1(dWorldGetAutoDisableSteps, w);
     CHECKI(dWorldSetAutoDisableSteps, sleeps(0.001, 0));
-    dWorldSetAutoDisableTime(w, 0.3);
+    dWorldSetAutoDisableTime(w, 0.28125);
     R1(dWorldGetAutoDisableTime, w);
     CHECKI(dWorldSetAutoDisableTime, sleeps(0.001, 0));
     dWorldSetAutoDisableLinearThreshold(w, 0.5);

@@ -76,12 +76,18 @@ pub fn run(program: &Path, folder: &Path) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), output.status)
 }
 
-/// Lines that differ: words have to be the same, or numbers that agree to `tolerance`, relative above 1.
-pub fn differences(name: &str, wanted: &str, got: &str, tolerance: f64) -> Vec<String> {
+/// Whether two lines are the same: their words, or numbers that agree to `tolerance`, relative above 1.
+pub fn agree(a: &str, b: &str, tolerance: f64) -> bool {
     let near = |a: &str, b: &str| match (a.parse::<f64>(), b.parse::<f64>()) {
         (Ok(a), Ok(b)) => (a - b).abs() <= tolerance * a.abs().max(1.0),
         _ => false,
     };
+    a.split_whitespace().count() == b.split_whitespace().count()
+        && a.split_whitespace().zip(b.split_whitespace()).all(|(a, b)| a == b || near(a, b))
+}
+
+/// Lines that differ, by [`agree`].
+pub fn differences(name: &str, wanted: &str, got: &str, tolerance: f64) -> Vec<String> {
     let mut faults = Vec::new();
     let (mut a, mut b) = (wanted.lines(), got.lines());
     for number in 1.. {
@@ -90,9 +96,7 @@ pub fn differences(name: &str, wanted: &str, got: &str, tolerance: f64) -> Vec<S
             break;
         }
         let (a, b) = (a.unwrap_or("(end)"), b.unwrap_or("(end)"));
-        let same = a.split_whitespace().count() == b.split_whitespace().count()
-            && a.split_whitespace().zip(b.split_whitespace()).all(|(a, b)| a == b || near(a, b));
-        if !same {
+        if !agree(a, b, tolerance) {
             faults.push(format!("{name}, line {number}:\n  wanted: {a}\n  got:    {b}"));
         }
     }
