@@ -45,7 +45,7 @@ for source in crates/libode/tests/c/*.c crates/libode/tests/c/*.cpp crates/libod
   case $source in *.cpp) compiler="c++ -std=c++17" ;; esac
   $compiler -g -w -I crates/libode/include -o "$work/$name" "$source" -L "$work" -lode -lm -lpthread
   case $name in
-    escapes | space_pairs) tool=("${without_leaks[@]}") ;;
+    escapes | hostile | plain_errors | space_pairs) tool=("${without_leaks[@]}") ;;
     *) tool=("${memcheck[@]}") ;;
   esac
   judge "memcheck $name" "${tool[@]}" "$work/$name"
