@@ -80,6 +80,7 @@ pub struct Contacts<'a> {
 
 impl<'a> Contacts<'a> {
     /// Adds to the end of `list`; what is already there stays as it is.
+    #[inline]
     pub fn new(list: &'a mut Vec<GeomContact>, options: CollideOptions) -> Self {
         let start = list.len();
         Self { list, start, options, turned: false, edited: false }
@@ -134,11 +135,22 @@ impl<'a> Contacts<'a> {
         }
         let (p, n) = (position, normal);
         let sum = (p.x + p.y) + (p.z + n.x) + ((n.y + n.z) + depth);
-        if sum.abs() < f64::INFINITY && depth >= 0.0 {
+        // Nothing times zero is zero but a finite number.
+        if sum * 0.0 == 0.0 && depth >= 0.0 {
             let sign = if self.turned { -1.0 } else { 1.0 };
             self.list.push(GeomContact::new(position, normal * sign, depth));
         } else {
-            self.push_odd(GeomContact::new(position, normal, depth));
+            self.push_unsound([p.x, p.y, p.z], [n.x, n.y, n.z], depth);
+        }
+    }
+
+    /// As [`push`](Self::push), for contacts whose place and normal are made of finite numbers if the depth is one: where they
+    /// follow from the same numbers.
+    #[inline(always)]
+    pub(crate) fn push_sound(&mut self, position: Vec3, normal: Vec3, depth: f64) {
+        if depth >= 0.0 && depth < f64::INFINITY && !self.is_full() {
+            let sign = if self.turned { -1.0 } else { 1.0 };
+            self.list.push(GeomContact::new(position, normal * sign, depth));
         }
     }
 
@@ -150,19 +162,37 @@ impl<'a> Contacts<'a> {
         }
     }
 
-    #[inline(never)]
     fn push_odd(&mut self, mut contact: GeomContact) {
         if contact.lift_if_sound() {
             self.list.push(if self.turned { contact.swapped() } else { contact });
         }
     }
 
+    #[cold]
+    #[inline(never)]
+    fn push_unsound(&mut self, position: [f64; 3], normal: [f64; 3], depth: f64) {
+        self.push_odd(GeomContact::new(Vec3::from_array(position), Vec3::from_array(normal), depth));
+    }
+
     /// Drops contacts that changes after they were added left without finite numbers.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn finish(&mut self) {
-        if self.edited && !self.list[self.start..].iter_mut().all(GeomContact::lift_if_sound) {
-            let added = self.list.split_off(self.start);
-            self.list.extend(added.into_iter().filter(|c| c.clone().lift_if_sound()));
+        if self.edited {
+            self.drop_unsound();
+        }
+    }
+
+    #[inline(never)]
+    fn drop_unsound(&mut self) {
+        if !self.list[self.start..].iter_mut().all(GeomContact::lift_if_sound) {
+            let mut kept = self.start;
+            for i in self.start..self.list.len() {
+                if self.list[i].lift_if_sound() {
+                    self.list[kept] = self.list[i];
+                    kept += 1;
+                }
+            }
+            self.list.truncate(kept);
         }
     }
 

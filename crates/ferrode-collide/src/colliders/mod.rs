@@ -343,6 +343,7 @@ impl Colliders {
     }
 
     /// The geom `key`.
+    #[inline]
     pub fn geom(&self, key: GeomKey) -> Option<&Geom> {
         match &self.nodes.get(key.0)?.content {
             Content::Geom(geom) => Some(geom),

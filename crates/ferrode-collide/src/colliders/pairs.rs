@@ -187,6 +187,7 @@ impl Colliders {
     }
 
     /// As [`contacts`](Self::contacts), for two geoms, without naming them; allocates nothing if `out` has room.
+    #[inline]
     pub fn geom_contacts(
         &self,
         a: GeomKey,
@@ -194,8 +195,10 @@ impl Colliders {
         options: CollideOptions,
         out: &mut Vec<GeomContact>,
     ) -> usize {
-        let (Some(ga), Some(gb)) = (self.geom(a), self.geom(b)) else { return 0 };
-        if a == b || (ga.body.is_some() && ga.body == gb.body) {
+        // One after the other: looked up at once, both would be tested at length before the first is known to be there.
+        let Some(ga) = self.geom(a) else { return 0 };
+        let Some(gb) = self.geom(b) else { return 0 };
+        if core::ptr::eq(ga, gb) || (ga.body.is_some() && ga.body == gb.body) {
             return 0;
         }
         narrow::collide_frames((&ga.shape, &ga.frame), (&gb.shape, &gb.frame), options, out)

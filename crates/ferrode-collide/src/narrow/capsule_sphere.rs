@@ -5,6 +5,13 @@ use crate::{Capsule, Contacts, Frame, Sphere};
 pub fn capsule_sphere(capsule: &Capsule, fc: &Frame, sphere: &Sphere, fs: &Frame, out: &mut Contacts<'_>) {
     let u = fc.axis(2);
     let half = 0.5 * capsule.length();
-    let along = u.dot(fs.position - fc.position).min(half).max(-half);
+    let along = u.dot(fs.position - fc.position);
+    let along = if along > half {
+        half
+    } else if along < -half {
+        -half
+    } else {
+        along
+    };
     spheres(fc.position + u * along, capsule.radius(), fs.position, sphere.radius(), out);
 }

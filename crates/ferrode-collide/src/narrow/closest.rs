@@ -137,34 +137,34 @@ pub fn closest_segment_cuboid(p1: Vec3, p2: Vec3, cuboid: &Cuboid, fb: &Frame) -
         d
     };
     let mut t = 0.0;
-    if derivative(0.0) < 0.0 {
-        let mut crossings = [1.0; 7];
-        let mut n = 0;
-        for i in 0..3 {
-            if v[i].abs() > 1e-307 {
-                for side in [-half[i], half[i]] {
-                    let at = (side - s[i]) / v[i];
-                    if at > 0.0 && at < 1.0 {
-                        crossings[n] = at;
-                        n += 1;
+    let at_start = derivative(0.0);
+    if at_start < 0.0 {
+        t = 1.0;
+        let at_end = derivative(1.0);
+        if at_end >= 0.0 {
+            // Between two places where the segment passes a face's plane it is linear: narrowed down to these.
+            let (mut left, mut slope_left) = (0.0, at_start);
+            let (mut right, mut slope_right) = (1.0, at_end);
+            for i in 0..3 {
+                if v[i].abs() > 1e-307 {
+                    for side in [-half[i], half[i]] {
+                        let at = (side - s[i]) / v[i];
+                        if at > left && at < right {
+                            let slope = derivative(at);
+                            if slope >= 0.0 {
+                                (right, slope_right) = (at, slope);
+                            } else {
+                                (left, slope_left) = (at, slope);
+                            }
+                        }
                     }
                 }
             }
-        }
-        crossings[..n].sort_by(f64::total_cmp);
-        let (mut left, mut slope_left) = (0.0, derivative(0.0));
-        t = 1.0;
-        for &right in &crossings[..=n] {
-            let slope_right = derivative(right);
-            if slope_right >= 0.0 {
-                t = if slope_right > slope_left {
-                    left - slope_left * (right - left) / (slope_right - slope_left)
-                } else {
-                    right
-                };
-                break;
-            }
-            (left, slope_left) = (right, slope_right);
+            t = if slope_right > slope_left {
+                left - slope_left * (right - left) / (slope_right - slope_left)
+            } else {
+                right
+            };
         }
     }
     let on_segment = p1 + (p2 - p1) * t;

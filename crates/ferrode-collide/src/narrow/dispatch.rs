@@ -365,6 +365,7 @@ pub fn collide(
 }
 
 /// As [`collide`], for callers who have the rotation matrices at hand.
+#[inline]
 pub fn collide_frames(
     a: (&Shape, &Frame),
     b: (&Shape, &Frame),

@@ -17,7 +17,23 @@ const EQUAL: f64 = f64::EPSILON;
 /// below the field is pushed up by one contact.
 pub fn heightfield_shape(field: &Heightfield, ff: &Frame, shape: &Shape, fs: &Frame, out: &mut Contacts<'_>) {
     // All in the field's coordinates.
-    let local = Frame::new(ff.point_to_local(fs.position), ff.rotation.transpose() * fs.rotation);
+    let at = ff.point_to_local(fs.position);
+    let beside = match shape {
+        Shape::Ray(ray) => {
+            let along = ff.vector_to_local(fs.axis(2)) * (0.5 * ray.length());
+            field.is_beside(at + along, 0.5 * ray.length())
+        }
+        Shape::TriMesh(mesh) => {
+            let bounds = mesh.bounds();
+            let middle = ff.point_to_local(fs.point_to_world(bounds.center()));
+            field.is_beside(middle, 0.5 * bounds.extent().length())
+        }
+        _ => field.is_beside(at, shape.reach()),
+    };
+    if beside {
+        return;
+    }
+    let local = Frame::new(at, ff.rotation.transpose() * fs.rotation);
     let aabb = shape.aabb_in(&local);
     let Some(zone) = Zone::under(field, &aabb) else { return };
     {

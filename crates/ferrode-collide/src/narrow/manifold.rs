@@ -1,6 +1,7 @@
 //! From the deepest point to all points: the features that face each other, clipped.
 
 use super::convex::Touch;
+use super::cutout::Cutout;
 use super::support::{Body, Core};
 use crate::Contacts;
 use ferrode_math::Vec3;
@@ -242,6 +243,58 @@ pub(super) fn add_face_contacts(a: &Body<'_>, b: &Body<'_>, n: Vec3, out: &mut C
     }
     if !found.is_empty() {
         add(&found, n, Vec3::ZERO, out);
+    }
+}
+
+/// Tells of the contacts of a body with a triangle along its unit normal `n`: places on the body's surface over the triangle,
+/// and how deep they are, at most eight. As [`add_face_contacts`], for many triangles.
+pub(super) fn add_part_over(a: &Body<'_>, corners: &[Vec3; 3], n: Vec3, mut add: impl FnMut(Vec3, f64)) {
+    let feature = Feature::of(a, -n);
+    let level = n.dot(corners[0]);
+    let mut part = Cutout::new(&feature.points[..feature.count]);
+    part.keep_below(n, level);
+    let mut lowest = a.support(-n) - n * a.margin;
+    let mut over = true;
+    for e in 0..3 {
+        // Out over the edge, as long as that is.
+        let side = corners[(e + 1) % 3] - corners[e];
+        let outward = side.cross(n);
+        let edge = outward.dot(corners[e]);
+        part.keep_below(outward, edge);
+        // Over the edge between two triangles it is over both, whatever the rounding.
+        over &= outward.dot(lowest) - edge <= 1e-9 * side.length_squared();
+    }
+    let points = part.corners();
+    let depth = |p: Vec3| level - n.dot(p);
+    // The lowest corner need not be one of the face that looks most downward.
+    let deepest = points.iter().map(|&p| depth(p)).fold(f64::NEG_INFINITY, f64::max);
+    let own = over && depth(lowest) >= 0.0 && deepest < depth(lowest) - 1e-6 * a.reach();
+    if points.len() + usize::from(own) <= MOST {
+        for &p in points {
+            add(p, depth(p).max(0.0));
+        }
+        if own {
+            add(lowest, depth(lowest));
+        }
+        return;
+    }
+    // The deepest first, then whatever is furthest from those told of.
+    if !own {
+        lowest =
+            points.iter().copied().reduce(|p, q| if depth(q) > depth(p) { q } else { p }).unwrap_or(lowest);
+    }
+    let mut nearest = [f64::INFINITY; FEATURE + 8];
+    let mut next = lowest;
+    for _ in 0..MOST {
+        add(next, depth(next).max(0.0));
+        let mut furthest = 0;
+        for (i, &p) in points.iter().enumerate() {
+            nearest[i] = nearest[i].min((p - next).length_squared());
+            if nearest[i] > nearest[furthest] {
+                furthest = i;
+            }
+        }
+        next = points[furthest];
     }
 }
 

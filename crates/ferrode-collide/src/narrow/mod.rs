@@ -24,6 +24,7 @@ mod cuboid_cuboid;
 mod cuboid_plane;
 mod cuboid_trimesh;
 mod custom;
+mod cutout;
 mod cylinder_cuboid;
 mod cylinder_cylinder;
 mod cylinder_plane;

@@ -47,9 +47,4 @@ impl Polygon {
         }
         *self = kept;
     }
-
-    /// Keeps what lies at or below the plane n · x = level.
-    pub fn keep_below(&mut self, n: Vec3, level: f64) {
-        self.clip(-n, level);
-    }
 }

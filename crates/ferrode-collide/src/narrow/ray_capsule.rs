@@ -1,4 +1,4 @@
-use super::unit::unit_or;
+use super::unit::unit_of_length;
 use crate::{Capsule, Contacts, Frame, Ray};
 use ferrode_math::Vec3;
 
@@ -20,25 +20,34 @@ pub fn ray_capsule(ray: &Ray, fr: &Frame, capsule: &Capsule, fc: &Frame, out: &m
         return;
     }
     let (start, direction) = (fc.vector_to_local(between), fc.vector_to_local(u));
-    let Some((entry, exit)) = span(start, direction, r, half) else { return };
-    let alpha = if entry >= 0.0 { entry } else { exit };
-    if !(alpha >= 0.0 && alpha <= ray.length()) {
+    let Some(alpha) = first_end(start, direction, r, half) else { return };
+    if !(alpha <= ray.length()) {
         return;
     }
-    let from_axis = |p: Vec3| p - Vec3::new(0.0, 0.0, p.z.clamp(-half, half));
-    let outward = fc.vector_to_world(unit_or(from_axis(start + direction * alpha), -direction));
+    let from_axis = |p: Vec3| {
+        let z = if p.z > half {
+            p.z - half
+        } else if p.z < -half {
+            p.z + half
+        } else {
+            0.0
+        };
+        Vec3::new(p.x, p.y, z)
+    };
+    let outward = unit_of_length(from_axis(start + direction * alpha), r).unwrap_or(-direction);
+    let outward = fc.vector_to_world(outward);
     let inside = from_axis(start).length_squared() < r * r;
-    out.push(o + u * alpha, if inside { -outward } else { outward }, alpha);
+    out.push_sound(o + u * alpha, if inside { -outward } else { outward }, alpha);
 }
 
-/// Where the line start + t direction enters and leaves.
-fn span(start: Vec3, direction: Vec3, r: f64, half: f64) -> Option<(f64, f64)> {
-    // Of the ball about the end at height z.
-    let ball = |z: f64| {
+/// Where the line start + t direction enters, or if that is before its start, where it leaves.
+fn first_end(start: Vec3, direction: Vec3, r: f64, half: f64) -> Option<f64> {
+    // Of the ball about the end at height z, to the one side or the other.
+    let ball = |z: f64, sign: f64| {
         let q = start - Vec3::new(0.0, 0.0, z);
         let nearest = -q.dot(direction);
         let square = r * r - (q + direction * nearest).length_squared();
-        (square >= 0.0).then(|| (nearest - square.sqrt(), nearest + square.sqrt()))
+        (square >= 0.0).then(|| nearest + sign * square.sqrt())
     };
     let a = direction.x * direction.x + direction.y * direction.y;
     if a > 1e-300 {
@@ -49,17 +58,17 @@ fn span(start: Vec3, direction: Vec3, r: f64, half: f64) -> Option<(f64, f64)> {
             return None;
         }
         let chord = (square / a).sqrt();
-        let end = |t: f64, sign: f64| {
+        let end = |sign: f64| {
+            let t = middle + sign * chord;
             let z = start.z + direction.z * t;
-            if z.abs() <= half {
-                return Some(t);
-            }
-            ball(if z > 0.0 { half } else { -half }).map(|b| if sign < 0.0 { b.0 } else { b.1 })
+            if z.abs() <= half { Some(t) } else { ball(if z > 0.0 { half } else { -half }, sign) }
         };
-        Some((end(middle - chord, -1.0)?, end(middle + chord, 1.0)?))
+        let entry = end(-1.0)?;
+        if entry >= 0.0 { Some(entry) } else { end(1.0).filter(|&exit| exit >= 0.0) }
     } else {
         // Along the axis.
-        let (low, high) = (ball(-half)?, ball(half)?);
-        Some((low.0.min(high.0), low.1.max(high.1)))
+        let entry = ball(-half, -1.0)?.min(ball(half, -1.0)?);
+        let exit = ball(-half, 1.0)?.max(ball(half, 1.0)?);
+        Some(if entry >= 0.0 { entry } else { exit }).filter(|&t| t >= 0.0)
     }
 }

@@ -1,4 +1,4 @@
-use super::unit::unit_or;
+use super::unit::unit_of_length;
 use crate::{Contacts, Frame, Ray, Sphere};
 
 /// A ray and a ball: the first point hit; from within, the point where the ray leaves, with the normal inward.
@@ -18,7 +18,6 @@ pub fn ray_sphere(ray: &Ray, fr: &Frame, sphere: &Sphere, fs: &Frame, out: &mut 
     if !(alpha >= 0.0 && alpha <= ray.length()) {
         return;
     }
-    let hit = o + u * alpha;
-    let outward = unit_or(hit - fs.position, -u);
-    out.push(hit, if q.length_squared() >= r * r { outward } else { -outward }, alpha);
+    let outward = unit_of_length(q + u * alpha, r).unwrap_or(-u);
+    out.push_sound(o + u * alpha, if q.length_squared() >= r * r { outward } else { -outward }, alpha);
 }

@@ -53,14 +53,26 @@ fn spread(list: &mut [GeomContact], wanted: usize, size: f64) {
         (a.point.position - b.point.position).length_squared()
             + (a.point.normal - b.point.normal).length_squared() * size * size
     };
+    // Of each that is left, how much it differs from those chosen; of many, it is found again each time.
+    const KEPT: usize = 64;
+    let mut least = [f64::INFINITY; KEPT];
+    let kept = list.len() <= KEPT;
     for chosen in 1..wanted {
         let mut best = (f64::NEG_INFINITY, chosen);
         for i in chosen..list.len() {
-            let least = list[..chosen].iter().map(|c| difference(c, &list[i])).fold(f64::INFINITY, f64::min);
-            if least > best.0 {
-                best = (least, i);
+            let differs = if kept {
+                least[i] = least[i].min(difference(&list[chosen - 1], &list[i]));
+                least[i]
+            } else {
+                list[..chosen].iter().map(|c| difference(c, &list[i])).fold(f64::INFINITY, f64::min)
+            };
+            if differs > best.0 {
+                best = (differs, i);
             }
         }
         list.swap(chosen, best.1);
+        if kept {
+            least.swap(chosen, best.1);
+        }
     }
 }

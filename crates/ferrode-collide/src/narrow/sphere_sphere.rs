@@ -25,12 +25,12 @@ pub fn spheres(c1: Vec3, r1: f64, c2: Vec3, r2: f64, out: &mut Contacts<'_>) -> 
         return false;
     }
     if d <= 0.0 {
-        out.push(c1, Vec3::X, depth);
+        out.push_sound(c1, Vec3::X, depth);
         return true;
     }
     // Of lengths whose square is subnormal, the root has lost digits.
     let n = if d > 1e-145 { line * (1.0 / d) } else { line.normalized_or(Vec3::X) };
-    out.push(c1 + n * (0.5 * (r2 - r1 - d)), n, depth);
+    out.push_sound(c1 + n * (0.5 * (r2 - r1 - d)), n, depth);
     true
 }
 

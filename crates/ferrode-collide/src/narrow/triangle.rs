@@ -1,11 +1,11 @@
 //! A triangle of a surface against a body.
 
 use super::convex::{Touch, touch};
-use super::manifold::{add_face_contacts, add_manifold};
+use super::manifold::{add_face_contacts, add_manifold, add_part_over};
 use super::over_face::over_face;
 use super::support::Body;
-use crate::Contacts;
 use crate::shape::Neighbour;
+use crate::{Contacts, GeomContact};
 use ferrode_math::{Aabb, Vec3};
 
 /// A triangle with its front, and what lies beyond its edges.
@@ -35,20 +35,6 @@ impl Facet {
             q += self.corners[places[k]] * weights[k];
         }
         q
-    }
-
-    /// The corner furthest along `d`, or the middle of the edge if two are as far.
-    pub fn furthest(&self, d: Vec3) -> Vec3 {
-        let far = self.corners.map(|p| d.dot(p));
-        let high = far[0].max(far[1]).max(far[2]);
-        let near = high - SAME * self.scale();
-        let mut sum = Vec3::ZERO;
-        let mut count = 0.0;
-        for (p, _) in self.corners.iter().zip(far).filter(|(_, f)| *f >= near) {
-            sum += *p;
-            count += 1.0;
-        }
-        sum * (1.0 / count)
     }
 
     /// A length like the triangle's.
@@ -102,6 +88,39 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     out.truncate(kept);
 }
 
+/// Adds the contacts of the body's face, edge or corner that is over the triangle, at the body's surface, if the body's middle
+/// is before the triangle: what is left when no direction over an edge is one in which the surface could push.
+pub(super) fn face_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Contacts<'_>) {
+    if !faces(body, middle, facet) {
+        return;
+    }
+    let n = facet.normal;
+    let most = least_elsewhere(body, facet, middle) / (1.0 - 1e-6);
+    add_part_over(body, &facet.corners, n, |p, depth| {
+        if depth <= most {
+            let mut c = GeomContact::new(p, n, depth);
+            c.side2 = facet.index;
+            out.push_contact(c);
+        }
+    });
+}
+
+/// The least depth of the body below the triangles beyond convex edges that also have its middle before them.
+fn least_elsewhere(body: &Body<'_>, facet: &Facet, middle: Vec3) -> f64 {
+    let mut least = f64::INFINITY;
+    for (neighbour, &corner) in facet.neighbours.iter().zip(&facet.corners) {
+        if let Neighbour::Convex(other) = *neighbour
+            && other.dot(middle - corner) > 0.0
+        {
+            let depth = other.dot(corner - body.support(-other)) + body.margin;
+            if depth >= 0.0 && depth < least {
+                least = depth;
+            }
+        }
+    }
+    least
+}
+
 /// Whether a body's middle is before a triangle, and the body reaches its plane.
 fn faces(body: &Body<'_>, middle: Vec3, facet: &Facet) -> bool {
     facet.height(middle) >= 0.0 && facet.height(body.support(-facet.normal)) <= body.margin
@@ -130,7 +149,8 @@ fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Co
     }
     let entry = middle + (lowest - middle) * (above / (above + depth));
     for e in 0..3 {
-        let outward = facet.outward(e);
+        // Of any length: only signs count.
+        let outward = (facet.corners[(e + 1) % 3] - facet.corners[e]).cross(n);
         let beyond = |p: Vec3| outward.dot(p - facet.corners[e]) > 0.0;
         if beyond(lowest) || (beyond(entry) && facet.neighbours[e] != Neighbour::FlatOrConcave) {
             return;
@@ -212,24 +232,42 @@ pub(super) enum Verdict {
     Ghost,
 }
 
-/// Judges the normal of a contact at a point of the triangle.
-pub(super) fn judge(facet: &Facet, normal: Vec3, point: Vec3) -> Verdict {
-    let along = normal.dot(facet.normal);
-    let lean = (normal - facet.normal * along).length();
-    if along > 0.0 && lean <= LEAN {
+/// Judges the normal of a contact at a point of a triangle, which is asked for only if it matters.
+#[inline]
+pub(super) fn judge(
+    corners: &[Vec3; 3],
+    face: Vec3,
+    neighbours: &[Neighbour; 3],
+    normal: Vec3,
+    point: impl FnOnce() -> Vec3,
+) -> Verdict {
+    let along = normal.dot(face);
+    if along > 0.0 && (normal - face * along).length_squared() <= LEAN * LEAN {
         return Verdict::Sound;
     }
     if along < -LEAN {
         return Verdict::FromBehind;
     }
-    let scale = facet.scale();
-    let ghost = |e: usize| {
-        let out = facet.outward(e);
-        facet.neighbours[e] == Neighbour::FlatOrConcave
-            && normal.dot(out) > LEAN
-            && out.dot(facet.corners[e] - point) <= 1e-6 * scale
+    // Directions out over the edges, as long as these: only their signs and squares matter.
+    let leans = |e: usize| {
+        let out = (corners[(e + 1) % 3] - corners[e]).cross(face);
+        let lean = normal.dot(out);
+        let inner = matches!(neighbours[e], Neighbour::FlatOrConcave);
+        (inner && lean > 0.0 && lean * lean > LEAN * LEAN * out.length_squared()).then_some(out)
     };
-    if (0..3).any(ghost) { Verdict::Ghost } else { Verdict::Sound }
+    let leaning = [leans(0), leans(1), leans(2)];
+    if leaning == [None; 3] {
+        return Verdict::Sound;
+    }
+    let point = point();
+    let near = 1e-6 * ((corners[1] - corners[0]).abs_max() + (corners[2] - corners[0]).abs_max());
+    let ghost = (0..3).any(|e| {
+        leaning[e].is_some_and(|out| {
+            let inside = out.dot(corners[e] - point);
+            inside <= 0.0 || inside * inside <= near * near * out.length_squared()
+        })
+    });
+    if ghost { Verdict::Ghost } else { Verdict::Sound }
 }
 
 /// The box around a body, in the coordinates it is placed in.

@@ -1,4 +1,4 @@
-use super::polygon::Polygon;
+use super::cutout::Cutout;
 use super::reduce::keep_wanted;
 use super::triangle::{Facet, Verdict, judge};
 use super::triangle_pairs::triangle_pairs;
@@ -96,7 +96,7 @@ fn facets(
     out: &mut Contacts<'_>,
 ) {
     let (behind_b, behind_a) = (behind(a, b), behind(b, a));
-    let depth = |found: &Option<(Polygon, f64)>| found.as_ref().map_or(f64::INFINITY, |f| f.1);
+    let depth = |found: &Option<(Cutout, f64)>| found.as_ref().map_or(f64::INFINITY, |f| f.1);
     // The other way only if the shorter one contradicts the surfaces.
     let order = if depth(&behind_b) <= depth(&behind_a) { [true, false] } else { [false, true] };
     for of_a in order {
@@ -107,7 +107,8 @@ fn facets(
         let mut any = false;
         for &p in polygon.corners() {
             if -surface.height(p) <= depth - BAND
-                || judge(inner, -surface.normal, p) == Verdict::Ghost
+                || judge(&inner.corners, inner.normal, &inner.neighbours, -surface.normal, || p)
+                    == Verdict::Ghost
                 || if of_a { nearer_b(p, depth) } else { nearer_a(p, depth) }
             {
                 continue;
@@ -125,10 +126,11 @@ fn facets(
 }
 
 /// What of `a` is over and behind `b`, and how deep; `None` if nothing is.
-fn behind(a: &Facet, b: &Facet) -> Option<(Polygon, f64)> {
-    let mut polygon = Polygon::new(&a.corners);
+fn behind(a: &Facet, b: &Facet) -> Option<(Cutout, f64)> {
+    let mut polygon = Cutout::new(&a.corners);
     for e in 0..3 {
-        let outward = b.outward(e);
+        // Of any length.
+        let outward = (b.corners[(e + 1) % 3] - b.corners[e]).cross(b.normal);
         polygon.keep_below(outward, outward.dot(b.corners[e]));
     }
     polygon.keep_below(b.normal, b.normal.dot(b.corners[0]));

@@ -15,3 +15,12 @@ pub(super) fn unit(v: Vec3) -> Option<Vec3> {
 pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     unit(v).unwrap_or(fallback)
 }
+
+/// The unit vector along `v`, whose length is known but for rounding: without a root.
+#[inline(always)]
+pub(super) fn unit_of_length(v: Vec3, length: f64) -> Option<Vec3> {
+    let n = v * (1.0 / length);
+    let off = n.length_squared() - 1.0;
+    // One step of Newton's method for the reciprocal root leaves 3/8 of the square.
+    if off.abs() < 1e-8 { Some(n * (1.0 - 0.5 * off)) } else { unit(v) }
+}

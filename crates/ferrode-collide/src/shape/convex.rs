@@ -158,6 +158,12 @@ impl Convex {
         Vec3::new(x[best], y[best], z[best])
     }
 
+    /// The corners four at a time, by components; the last is repeated to fill up.
+    #[inline]
+    pub(crate) fn blocks(&self) -> &[[[f64; 4]; 3]] {
+        &self.data.blocks
+    }
+
     /// The face whose normal is most along `d`.
     pub fn face_along(&self, d: Vec3) -> usize {
         let mut best = 0;

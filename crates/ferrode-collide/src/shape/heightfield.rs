@@ -22,6 +22,8 @@ struct Field {
     heights: Vec<f64>,
     low: f64,
     high: f64,
+    /// The highest sample, whatever bounds are given.
+    top: f64,
     thickness: f64,
     wrap: bool,
 }
@@ -68,7 +70,8 @@ impl Heightfield {
         }
         let low = heights.iter().copied().fold(f64::INFINITY, f64::min);
         let high = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let data = Field { width, depth, columns, rows, heights, low, high, thickness, wrap: false };
+        let data =
+            Field { width, depth, columns, rows, heights, low, high, top: high, thickness, wrap: false };
         Ok(Self { data: Arc::new(data) })
     }
 
@@ -142,6 +145,17 @@ impl Heightfield {
             self.height(x, z),
             z as f64 * sz - 0.5 * self.data.depth,
         )
+    }
+
+    /// Whether a ball in local coordinates is above all samples, or beyond the field's sides. A hair less, so that rounding
+    /// never decides.
+    #[inline]
+    pub(crate) fn is_beside(&self, center: Vec3, radius: f64) -> bool {
+        let d = &self.data;
+        let reach = radius * (1.0 + 1e-9) + 1e-9 * center.abs_max();
+        let beyond = |x: f64, size: f64| x.abs() - reach > 0.5 * size * (1.0 + 1e-9);
+        center.y - reach > d.top + 1e-9 * d.top.abs()
+            || (!d.wrap && (beyond(center.x, d.width) || beyond(center.z, d.depth)))
     }
 
     /// The world box around the field.

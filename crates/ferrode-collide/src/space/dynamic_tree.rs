@@ -281,11 +281,10 @@ impl DynamicTree {
                 found(payload);
             } else {
                 let [a, b] = test(child);
-                if b {
-                    pending.push(child + 1);
-                }
-                if a {
-                    i = child;
+                // Without a branch for which of the two: that cannot be foretold.
+                pending.push_if(a & b, child + 1);
+                if a | b {
+                    i = child + u32::from(!a);
                     continue;
                 }
             }

@@ -109,6 +109,17 @@ impl<T: Copy + Default> Pending<T> {
         }
     }
 
+    /// As [`push`](Self::push) where `wanted`, else nothing; does not branch on it.
+    #[inline(always)]
+    pub fn push_if(&mut self, wanted: bool, node: T) {
+        if self.len < FIRST {
+            self.first[self.len] = node;
+            self.len += usize::from(wanted);
+        } else if wanted {
+            self.spilled.push(node);
+        }
+    }
+
     #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
         if self.len == FIRST

@@ -77,12 +77,8 @@ impl AabbTree {
                 self.items(link, count).iter().for_each(|&item| found(item));
             } else {
                 let [a, b] = self.nodes.pair(link).overlaps(&around);
-                if b {
-                    pending.push(link + 1);
-                }
-                if a {
-                    pending.push(link);
-                }
+                pending.push_if(b, link + 1);
+                pending.push_if(a, link);
             }
         }
     }
