@@ -148,7 +148,7 @@ impl<'a> Contacts<'a> {
     /// follow from the same numbers.
     #[inline(always)]
     pub(crate) fn push_sound(&mut self, position: Vec3, normal: Vec3, depth: f64) {
-        if depth >= 0.0 && depth < f64::INFINITY && !self.is_full() {
+        if (0.0..=f64::MAX).contains(&depth) && !self.is_full() {
             let sign = if self.turned { -1.0 } else { 1.0 };
             self.list.push(GeomContact::new(position, normal * sign, depth));
         }

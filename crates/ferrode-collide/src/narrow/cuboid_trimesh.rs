@@ -81,9 +81,9 @@ impl CuboidRule {
         let edges = [v[1] - v[0], v[2] - v[1], v[0] - v[2]];
         let mut found = [[(0.0, 0.0, 0.0); 3]; 3];
         let mut apart = false;
-        for i in 0..3 {
+        for (i, row) in found.iter_mut().enumerate() {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            for e in 0..3 {
+            for (e, axis) in row.iter_mut().enumerate() {
                 let (x, y) = (-edges[e][k], edges[e][j]);
                 let (p, q) = (x * v[e][j] + y * v[e][k], {
                     let third = v[(e + 2) % 3];
@@ -94,7 +94,7 @@ impl CuboidRule {
                 // A short axis says nothing.
                 let square = x * x + y * y;
                 apart |= (lesser(ahead, behind) < 0.0) & (square > f64::EPSILON);
-                found[i][e] = (ahead, behind, square);
+                *axis = (ahead, behind, square);
             }
         }
         if apart {

@@ -4,19 +4,19 @@
 //! two triangles meets the edge between them. Such an answer is replaced by the part of the body's face over the triangle.
 //!
 //! ```text
-//! near the body (tree) → its plane reached (a support point) → met by the box around the body (three axes)
+//! near the body (tree) → plane reached, box around the body met (four triangles at once)
 //!   → the body's own axes ([`Rule`]) → contacts, or a ghost's replacement
 //! ```
-//! Nine of ten triangles near a body that touches are done with by the first two tests, which read no more than a corner and
-//! the normal.
+//! Most triangles near a body that touches are done with by the first two tests.
 
 use super::body_trimesh::body_trimesh;
 use super::convex::touch;
+use super::four::{Four, by_fours, corners, four_times, normals};
 use super::support::Body;
 use super::triangle::{Facet, Verdict, body_facet, face_facet, hidden_contact, judge};
 use crate::shape::Neighbour;
 use crate::{Contacts, Frame, GeomContact, Shape, TriMesh};
-use ferrode_math::{Aabb, Vec3};
+use ferrode_math::{Aabb, Scalar, Vec3};
 
 /// Most contacts with one triangle.
 const MOST: usize = 16;
@@ -233,50 +233,22 @@ pub(super) fn each_facet<R: Rule>(
         return;
     }
     let Some(body) = Body::of(shape, &local, Vec3::ZERO) else { return };
-    let half = rule.half();
-    let mut overlap = false;
-    {
-        let mut all = out.all();
-        let mut found = FacetContacts::new();
-        mesh.tree().query(&around, |i| {
-            let normal = mesh.normal(i);
-            let corners = mesh.corners(i);
-            let height = normal.dot(at - corners[0]);
-            let n = local.vector_to_local(normal);
-            let lowest = rule.lowest(n);
-            let depth = -height - n.dot(lowest);
-            if !(depth >= 0.0) || (!R::BOTH_SIDES && height < 0.0) || normal == Vec3::ZERO {
-                return;
-            }
-            let near = Near { corners: corners.map(|p| local.point_to_local(p)), normal: n, depth };
-            found.count = 0;
-            if !(meets_box(&near.corners, half) && rule.touch(&near, mesh.use_flags(i), &mut found)) {
-                if height >= 0.0
-                    && is_over(&near.corners, n, lowest)
-                    && let Some(facet) = mesh.facet(i)
-                {
-                    move_down(&mut all, |out| hidden_contact(&body, body.middle(), &facet, out));
-                }
-                return;
-            }
-            overlap = true;
-            let verdict = found.verdict(&near, mesh.neighbours(i));
-            if verdict == Verdict::Ghost {
-                if let Some(facet) = mesh.facet(i) {
-                    move_down(&mut all, |out| face_facet(&body, body.middle(), &facet, out));
-                }
-                return;
-            }
-            let normal = local.vector_to_world(found.normal);
-            for &(p, depth) in found.list() {
-                let mut c = GeomContact::new(local.point_to_world(p), normal, depth);
-                c.side2 = i as i32;
-                if verdict == Verdict::FromBehind {
-                    c.side1 = FROM_BEHIND;
-                }
-                add_distinct(c, &mut all);
-            }
-        });
+    let overlap = {
+        let half = rule.half();
+        let slack = 1e-9 * (half.x + half.y + half.z);
+        let mut search = Search {
+            rule,
+            mesh,
+            local: &local,
+            body: &body,
+            half,
+            slack,
+            found: FacetContacts::new(),
+            overlap: false,
+            all: out.all(),
+        };
+        by_fours(mesh.tree(), &around, |triangles, count| search.look_at(triangles, count));
+        let Search { mut all, overlap, .. } = search;
         drop_unsupported(&mut all);
         // Clipping may lose what overlaps.
         if overlap && all.is_empty() {
@@ -286,7 +258,8 @@ pub(super) fn each_facet<R: Rule>(
                 }
             });
         }
-    }
+        overlap
+    };
     super::reduce::keep_wanted(out, body.reach());
     if overlap && out.is_empty() {
         lift_out(&body, mesh, &around, out);
@@ -297,16 +270,109 @@ pub(super) fn each_facet<R: Rule>(
     }
 }
 
-/// Whether the box around a triangle meets the one around the body.
-#[inline(always)]
-fn meets_box(v: &[Vec3; 3], half: Vec3) -> bool {
-    let within = |a: f64, b: f64, c: f64, half: f64| {
-        (greater(greater(a, b), c) >= -half) & (lesser(lesser(a, b), c) <= half)
-    };
-    within(v[0].x, v[1].x, v[2].x, half.x)
-        & within(v[0].y, v[1].y, v[2].y, half.y)
-        & within(v[0].z, v[1].z, v[2].z, half.z)
+/// Finds the contacts of a body with triangles, in the mesh's coordinates.
+struct Search<'a, R> {
+    rule: &'a R,
+    mesh: &'a TriMesh,
+    local: &'a Frame,
+    body: &'a Body<'a>,
+    /// Half the sides of the box around the body.
+    half: Vec3,
+    /// More than rounding, in metres.
+    slack: f64,
+    /// Working memory.
+    found: FacetContacts,
+    /// Whether any triangle overlaps the body.
+    overlap: bool,
+    all: Contacts<'a>,
 }
+
+impl<R: Rule> Search<'_, R> {
+    /// Looks at the first `count` of four triangles.
+    #[inline(never)]
+    fn look_at(&mut self, triangles: [u32; 4], count: usize) {
+        let at = self.local.position;
+        let normal = normals(self.mesh, triangles);
+        let first = corners(self.mesh, triangles, 0, at);
+        let height = -normal.dot(first);
+        let axes = [0, 1, 2].map(|k| four_times(self.local.axis(k)));
+        let half = [Four::splat(self.half.x), Four::splat(self.half.y), Four::splat(self.half.z)];
+        let own_normal = [normal.dot(axes[0]), normal.dot(axes[1]), normal.dot(axes[2])];
+        let steep = own_normal.map(Four::abs);
+        let margin = Four::splat(self.slack);
+        let depth = steep[0] * half[0] + steep[1] * half[1] + steep[2] * half[2] + margin - height;
+        let reached = [0, 1, 2, 3].map(|l| (R::BOTH_SIDES || height.0[l] >= 0.0) & (depth.0[l] >= 0.0));
+        if reached == [false; 4] {
+            return;
+        }
+        // The corners in the body's own coordinates, by axis.
+        let (second, third) = (corners(self.mesh, triangles, 1, at), corners(self.mesh, triangles, 2, at));
+        let mut own = [[Four::ZERO; 3]; 3];
+        let mut gap = [Four::ZERO; 3];
+        for k in 0..3 {
+            let p = [first.dot(axes[k]), second.dot(axes[k]), third.dot(axes[k])];
+            let (low, high) = (p[0].lesser(p[1]).lesser(p[2]), p[0].greater(p[1]).greater(p[2]));
+            gap[k] = (low - half[k]).greater(-high - half[k]);
+            own[k] = p;
+        }
+        // A triangle beside the box around the body is of interest if the body's lowest point may be below it. That is
+        // not deeper than the box is, and the gap along an axis no wider than what a move up the normal bridges.
+        let mut excess = Four::splat(f64::NEG_INFINITY);
+        for k in 0..3 {
+            excess = excess.greater(gap[k] - depth * steep[k] - margin);
+        }
+        let widest = gap[0].greater(gap[1]).greater(gap[2]);
+        for (l, &i) in triangles[..count].iter().enumerate() {
+            if reached[l] & (excess.0[l] <= 0.0) {
+                let of = |v: [Four; 3]| v.map(|x| x.0[l]);
+                let [x, y, z] = own.map(of);
+                let n = Vec3::from_array(of(own_normal));
+                let corners = [0, 1, 2].map(|k| Vec3::new(x[k], y[k], z[k]));
+                self.consider(i, n, corners, height.0[l], widest.0[l] <= 0.0);
+            }
+        }
+    }
+
+    /// Looks at a triangle by its normal and corners in the body's own coordinates.
+    #[inline(always)]
+    fn consider(&mut self, i: u32, n: Vec3, corners: [Vec3; 3], height: f64, meets_box: bool) {
+        let lowest = self.rule.lowest(n);
+        let depth = -height - n.dot(lowest);
+        if !(depth >= 0.0) || n == Vec3::ZERO {
+            return;
+        }
+        let near = Near { corners, normal: n, depth };
+        self.found.count = 0;
+        if !(meets_box && self.rule.touch(&near, self.mesh.use_flags(i), &mut self.found)) {
+            if height >= 0.0
+                && is_over(&near.corners, n, lowest)
+                && let Some(facet) = self.mesh.facet(i)
+            {
+                let body = self.body;
+                move_down(&mut self.all, |out| hidden_contact(body, body.middle(), &facet, out));
+            }
+            return;
+        }
+        self.overlap = true;
+        let verdict = self.found.verdict(&near, self.mesh.neighbours(i));
+        if verdict == Verdict::Ghost {
+            if let Some(facet) = self.mesh.facet(i) {
+                face_facet(self.body, self.body.middle(), &facet, &mut self.all);
+            }
+            return;
+        }
+        let normal = self.local.vector_to_world(self.found.normal);
+        for &(p, depth) in self.found.list() {
+            let mut c = GeomContact::new(self.local.point_to_world(p), normal, depth);
+            c.side2 = i as i32;
+            if verdict == Verdict::FromBehind {
+                c.side1 = FROM_BEHIND;
+            }
+            add_distinct(c, &mut self.all);
+        }
+    }
+}
+
 /// The contacts of `body_trimesh` with one triangle.
 fn own_contacts(body: &Body<'_>, facet: &Facet, out: &mut Contacts<'_>) {
     move_down(out, |out| body_facet(body, body.middle(), facet, out));
@@ -375,7 +441,8 @@ fn drop_unsupported(out: &mut Contacts<'_>) {
 
 fn add_distinct(c: GeomContact, out: &mut Contacts<'_>) {
     let one = |k: &&mut GeomContact| {
-        (k.point.position - c.point.position).abs_max() < ONE
+        let d = k.point.position - c.point.position;
+        (d.x.abs() < ONE) & (d.y.abs() < ONE) & (d.z.abs() < ONE)
             && k.point.normal.dot(c.point.normal) > 1.0 - ONE
     };
     let Some(k) = out.added().iter_mut().find(one) else {

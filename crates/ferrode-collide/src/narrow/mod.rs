@@ -36,6 +36,7 @@ mod distance;
 mod epa;
 mod facet_axes;
 mod field_cells;
+mod four;
 mod gjk;
 pub(crate) mod heightfield_shape;
 mod heightfield_trimesh;

@@ -1,3 +1,4 @@
+use super::facet_axes::{greater, lesser};
 use crate::{Contacts, Cuboid, Frame, Ray};
 
 /// A ray and a box: the face where the ray enters, or leaves if it begins inside; the normal opposes the ray.
@@ -5,9 +6,9 @@ pub fn ray_cuboid(ray: &Ray, fr: &Frame, cuboid: &Cuboid, fb: &Frame, out: &mut 
     let (o, u) = ray.line(fr);
     let (start, direction) = (fb.point_to_local(o), fb.vector_to_local(u));
     let half = cuboid.half_sides();
-    // The part of the line between each two faces, and the axes of those where it enters and leaves.
-    let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
-    let (mut first, mut last) = (0, 0);
+    // Where the line enters and leaves the slab between each two faces. No branch on what cannot be foretold.
+    let mut enter = [f64::NEG_INFINITY; 3];
+    let mut leave = [f64::INFINITY; 3];
     for i in 0..3 {
         let (s, d, h) = (start[i], direction[i], half[i]);
         if d == 0.0 {
@@ -18,19 +19,23 @@ pub fn ray_cuboid(ray: &Ray, fr: &Frame, cuboid: &Cuboid, fb: &Frame, out: &mut 
         }
         let inverse = 1.0 / d;
         let (a, b) = ((-h - s) * inverse, (h - s) * inverse);
-        let (near, far) = if d > 0.0 { (a, b) } else { (b, a) };
-        if near > lo {
-            (lo, first) = (near, i);
-        }
-        if far < hi {
-            (hi, last) = (far, i);
-        }
+        enter[i] = lesser(a, b);
+        leave[i] = greater(a, b);
     }
-    if !(lo <= hi) {
-        return;
-    }
-    let (alpha, axis) = if lo >= 0.0 { (lo, first) } else { (hi, last) };
-    if alpha >= 0.0 && alpha <= ray.length() {
+    let lo = greater(greater(enter[0], enter[1]), enter[2]);
+    let hi = lesser(lesser(leave[0], leave[1]), leave[2]);
+    let inside = !(lo >= 0.0);
+    let alpha = if inside { hi } else { lo };
+    if (lo <= hi) & (alpha >= 0.0) & (alpha <= ray.length()) {
+        // Of faces that it enters at once the first.
+        let of = if inside { leave } else { enter };
+        let axis = if alpha == of[0] {
+            0
+        } else if alpha == of[1] {
+            1
+        } else {
+            2
+        };
         out.push(o + u * alpha, fb.axis(axis) * if direction[axis] > 0.0 { -1.0 } else { 1.0 }, alpha);
     }
 }

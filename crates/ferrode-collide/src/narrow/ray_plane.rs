@@ -1,3 +1,4 @@
+use super::facet_axes::lesser;
 use crate::{Contacts, Frame, Plane, Ray};
 
 /// A ray and a plane: the point hit, from either side, with the normal on the side of the origin.
@@ -8,9 +9,9 @@ pub fn ray_plane(ray: &Ray, fr: &Frame, plane: &Plane, _: &Frame, out: &mut Cont
     if !(slope != 0.0 && slope.abs() < 2.0) {
         return;
     }
-    // Divided before anything is asked: that takes no longer than a branch that most take otherwise.
+    // Divided before anything is asked, and only one thing asked: branches cost more.
     let (depth, alpha) = (plane.depth(o), plane.depth(o) / slope);
-    if alpha >= 0.0 && alpha <= ray.length() {
+    if lesser(alpha, ray.length() - alpha) >= 0.0 {
         let n = if depth > 0.0 { -plane.normal() } else { plane.normal() };
         out.push_sound(o + u * alpha, n, alpha);
     }

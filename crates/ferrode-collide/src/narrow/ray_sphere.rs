@@ -1,3 +1,4 @@
+use super::facet_axes::lesser;
 use super::unit::unit_of_length;
 use crate::{Contacts, Frame, Ray, Sphere};
 
@@ -15,7 +16,7 @@ pub fn ray_sphere(ray: &Ray, fr: &Frame, sphere: &Sphere, fs: &Frame, out: &mut 
     let half_chord = square.sqrt();
     let (entry, exit) = (to_nearest - half_chord, to_nearest + half_chord);
     let alpha = if entry >= 0.0 { entry } else { exit };
-    if !(alpha >= 0.0 && alpha <= ray.length()) {
+    if !(lesser(alpha, ray.length() - alpha) >= 0.0) {
         return;
     }
     let outward = unit_of_length(q + u * alpha, r).unwrap_or(-u);

@@ -1,10 +1,10 @@
+use super::four::{Four, by_fours, corners, normals};
 use super::merge::{ContactMerge, merge};
 use super::reduce::{keep_wanted, reduce};
 use super::triangle::Facet;
 use crate::shape::Neighbour;
 use crate::{Contacts, Frame, GeomContact, Sphere, TriMesh};
-use ferrode_math::Aabb;
-use ferrode_math::Vec3;
+use ferrode_math::{Aabb, Scalar, Vec3};
 
 /// A ball and a mesh: for each triangle that has the centre before it, the point nearest to the centre, with the
 /// triangle's normal and the part of the overlap along it (as libode), merged as [`TriMesh::with_sphere_merge`] says.
@@ -12,25 +12,43 @@ pub fn sphere_trimesh(sphere: &Sphere, fs: &Frame, mesh: &TriMesh, fm: &Frame, o
     let r = sphere.radius();
     let center = fm.point_to_local(fs.position);
     let around = Aabb::from_center(center, Vec3::splat(r));
+    let consider = |i: u32, all: &mut Contacts<'_>| {
+        let (n, corners) = (mesh.normal(i), mesh.corners(i));
+        if n == Vec3::ZERO {
+            return;
+        }
+        let facet = Facet { corners, normal: n, neighbours: [Neighbour::None; 3], index: i as i32 };
+        let q = facet.nearest(center);
+        let line = center - q;
+        let distance = line.length();
+        let overlap = r - distance;
+        if overlap >= 0.0 {
+            let cosine = if distance > 0.0 { line.dot(n) / distance } else { 1.0 };
+            let mut c = GeomContact::new(fm.point_to_world(q), fm.vector_to_world(n), overlap * cosine);
+            c.side2 = i as i32;
+            all.push_contact(c);
+        }
+    };
     {
         let mut all = out.all();
-        mesh.tree().query(&around, |i| {
-            let n = mesh.normal(i);
-            let corners = mesh.corners(i);
-            let height = n.dot(center - corners[0]);
-            if !(height >= 0.0 && height <= r) || n == Vec3::ZERO {
+        by_fours(mesh.tree(), &around, |numbers, count| {
+            let a = corners(mesh, numbers, 0, center);
+            let height = -normals(mesh, numbers).dot(a);
+            if height.0.iter().all(|&h| !((h >= 0.0) & (h <= r))) {
                 return;
             }
-            let facet = Facet { corners, normal: n, neighbours: [Neighbour::None; 3], index: i as i32 };
-            let q = facet.nearest(center);
-            let line = center - q;
-            let distance = line.length();
-            let overlap = r - distance;
-            if overlap >= 0.0 {
-                let cosine = if distance > 0.0 { line.dot(n) / distance } else { 1.0 };
-                let mut c = GeomContact::new(fm.point_to_world(q), fm.vector_to_world(n), overlap * cosine);
-                c.side2 = i as i32;
-                all.push_contact(c);
+            let (b, c) = (corners(mesh, numbers, 1, center), corners(mesh, numbers, 2, center));
+            // Squared distance of the box around each triangle.
+            let beside = |a: Four, b: Four, c: Four| {
+                let (low, high) = (a.lesser(b).lesser(c), a.greater(b).greater(c));
+                let gap = low.greater(-high).greater(Four::ZERO);
+                gap * gap
+            };
+            let square = beside(a.x, b.x, c.x) + beside(a.y, b.y, c.y) + beside(a.z, b.z, c.z);
+            for (l, &i) in numbers[..count].iter().enumerate() {
+                if (height.0[l] >= 0.0) & (height.0[l] <= r) & (square.0[l] <= r * r * (1.0 + 1e-9)) {
+                    consider(i, &mut all);
+                }
             }
         });
     }

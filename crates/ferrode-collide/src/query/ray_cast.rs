@@ -5,7 +5,7 @@ use crate::{
     CollideOptions, ColliderError, Colliders, Frame, Geom, GeomContact, GeomKey, Ray, Shape, SpaceKey,
 };
 use core::cell::Cell;
-use ferrode_math::Vec3;
+use ferrode_math::{Vec3, rotation};
 
 /// Where a ray met a geom.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +58,8 @@ struct Caster {
     frame: Frame,
     /// Longest that the ray can be: what it stands for, whatever is asked.
     length: f64,
+    /// As long as was asked for last.
+    ray: Shape,
     closest: bool,
     contacts: Vec<GeomContact>,
 }
@@ -65,24 +67,25 @@ struct Caster {
 impl Caster {
     /// `None` for a ray without direction or length.
     fn new(origin: Vec3, direction: Vec3, length: f64, closest: bool) -> Option<Self> {
-        let pose = Ray::pose(origin, direction)?;
+        let rotation = rotation::from_z_axis(direction)?;
         // As long as a ray may be stands for endless.
         let length = if length > 0.0 { length.min(1e150) } else { length };
-        Ray::new(length).ok()?;
-        Some(Self { frame: Frame::from(&pose), length, closest, contacts: HITS.take() })
+        let mut ray = Ray::new(length).ok()?;
+        ray.closest_hit = closest;
+        let frame = Frame::new(origin, rotation);
+        Some(Self { frame, length, ray: Shape::Ray(ray), closest, contacts: HITS.take() })
     }
 
     /// The hits with one shape up to `limit`.
     fn cast(&mut self, shape: &Shape, frame: &Frame, limit: f64) -> &[GeomContact] {
         self.contacts.clear();
-        if !matches!(shape, Shape::Ray(_))
-            && let Ok(mut ray) = Ray::new(limit)
+        if let Shape::Ray(ray) = &mut self.ray
+            && !matches!(shape, Shape::Ray(_))
+            && ray.set_length(limit).is_ok()
         {
-            ray.closest_hit = self.closest;
             let max_contacts = if self.closest { 1 } else { u16::MAX };
             let options = CollideOptions { max_contacts, unimportant: false };
-            let ray = Shape::Ray(ray);
-            narrow::collide_frames((&ray, &self.frame), (shape, frame), options, &mut self.contacts);
+            narrow::collide_frames((&self.ray, &self.frame), (shape, frame), options, &mut self.contacts);
         }
         &self.contacts
     }

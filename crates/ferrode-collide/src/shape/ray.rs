@@ -28,6 +28,13 @@ impl Ray {
         })
     }
 
+    /// Another length in metres; the options stay.
+    #[inline]
+    pub(crate) fn set_length(&mut self, length: f64) -> Result<(), ShapeError> {
+        self.length = checked_size("ray length", length)?;
+        Ok(())
+    }
+
     /// Length in metres.
     #[inline]
     pub fn length(&self) -> f64 {

@@ -150,6 +150,12 @@ impl TriMesh {
         self.data.triangles[i as usize].map(|v| self.data.vertices[v as usize])
     }
 
+    /// Corner `k` of triangle `i`.
+    #[inline(always)]
+    pub(crate) fn corner(&self, i: u32, k: usize) -> Vec3 {
+        self.data.vertices[self.data.triangles[i as usize][k] as usize]
+    }
+
     /// Unit normal of triangle `i`; zero if it has no area.
     #[inline]
     pub fn normal(&self, i: u32) -> Vec3 {

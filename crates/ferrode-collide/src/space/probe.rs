@@ -210,10 +210,14 @@ pub(crate) fn nearer(
     (met, at): ([bool; 2], [f32; 2]),
     pending: &mut Pending<(u32, f32)>,
 ) -> Option<u32> {
-    // Without a branch for which of the two: that cannot be foretold.
-    let both = met[0] & met[1];
-    let second = met[1] & (!met[0] | (at[1] < at[0]));
-    let (other, place) = if second { (c, at[0]) } else { (c + 1, at[1]) };
-    pending.push_if(both, (other, place));
-    (met[0] | met[1]).then_some(c + u32::from(second))
+    match met {
+        [true, true] => {
+            let second = u32::from(at[1] < at[0]);
+            pending.push((c + (second ^ 1), at[(second ^ 1) as usize]));
+            Some(c + second)
+        }
+        [true, false] => Some(c),
+        [false, true] => Some(c + 1),
+        [false, false] => None,
+    }
 }
