@@ -2,6 +2,7 @@ use super::convex::{Touch, touch};
 use super::manifold::add_manifold;
 use super::ray_trimesh::ray_triangle;
 use super::reduce::reduce;
+use super::sieve::Sieve;
 use super::support::Body;
 use super::triangle::{Facet, body_facet};
 use crate::space::Probe;
@@ -37,8 +38,13 @@ pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: 
     let middle = body.middle();
     {
         let mut all = out.all();
+        // That a triangle does not face the middle is seen below; that of the box is another.
+        let (frame, half) = box_around(&body);
+        let sieve = Sieve::new(mesh, frame, half, true);
         mesh.tree().query(&shape.aabb_in(&local), |i| {
-            if let Some(facet) = mesh.facet(i) {
+            if sieve.sift(i).is_some()
+                && let Some(facet) = mesh.facet(i)
+            {
                 body_facet(&body, middle, &facet, &mut all);
             }
         });
@@ -56,6 +62,19 @@ pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: 
         // From midway to the body's own surface, as over a plane.
         c.point.position -= c.point.normal * (0.5 * c.point.depth);
     }
+}
+
+/// The box around a body along its own axes: where it is, and half its sides.
+fn box_around(body: &Body<'_>) -> (Frame, Vec3) {
+    let (mut middle, mut half) = (Vec3::ZERO, Vec3::ZERO);
+    for k in 0..3 {
+        let axis = body.axis(k);
+        let high = axis.dot(body.support(axis)) + body.margin;
+        let low = axis.dot(body.support(-axis)) - body.margin;
+        middle += axis * (0.5 * (high + low));
+        half[k] = 0.5 * (high - low);
+    }
+    (Frame::new(middle, body.rotation), half)
 }
 
 /// Drops contacts with faces whose deep end is not below the surface: a pole in the hole of a ring ends before the plane of a

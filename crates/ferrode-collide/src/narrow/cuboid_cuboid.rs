@@ -112,16 +112,15 @@ impl<'a> Pair<'a> {
                 if s > 0.0 {
                     return None;
                 }
-                let length = axis.length();
-                // Of shorter ones, squares have lost digits.
-                if length > 1e-145 {
-                    let s = s / length;
-                    if s * EDGE_FACTOR > best {
-                        best = s;
-                        let axis = self.f1.vector_to_world(axis * (1.0 / length));
-                        normal = if distance < 0.0 { -axis } else { axis };
-                        code = 7 + 3 * i + j;
-                    }
+                // Squares tell which is better; the length is needed only then. Of shorter axes, squares have lost digits.
+                let square = axis.length_squared();
+                let overlap = s * EDGE_FACTOR;
+                if square > 1e-290 && overlap * overlap < best * best * square {
+                    let length = square.sqrt();
+                    best = s / length;
+                    let axis = self.f1.vector_to_world(axis * (1.0 / length));
+                    normal = if distance < 0.0 { -axis } else { axis };
+                    code = 7 + 3 * i + j;
                 }
             }
         }

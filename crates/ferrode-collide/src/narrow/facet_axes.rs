@@ -4,19 +4,19 @@
 //! two triangles meets the edge between them. Such an answer is replaced by the part of the body's face over the triangle.
 //!
 //! ```text
-//! near the body (tree) → plane reached, box around the body met (four triangles at once)
+//! near the body (tree) → plane reached, box around the body met ([`Sieve`])
 //!   → the body's own axes ([`Rule`]) → contacts, or a ghost's replacement
 //! ```
 //! Most triangles near a body that touches are done with by the first two tests.
 
 use super::body_trimesh::body_trimesh;
 use super::convex::touch;
-use super::four::{Four, by_fours, corners, four_times, normals};
+use super::sieve::{Sieve, Sieved};
 use super::support::Body;
 use super::triangle::{Facet, Verdict, body_facet, face_facet, hidden_contact, judge};
 use crate::shape::Neighbour;
 use crate::{Contacts, Frame, GeomContact, Shape, TriMesh};
-use ferrode_math::{Aabb, Scalar, Vec3};
+use ferrode_math::{Aabb, Vec3};
 
 /// Most contacts with one triangle.
 const MOST: usize = 16;
@@ -234,20 +234,17 @@ pub(super) fn each_facet<R: Rule>(
     }
     let Some(body) = Body::of(shape, &local, Vec3::ZERO) else { return };
     let overlap = {
-        let half = rule.half();
-        let slack = 1e-9 * (half.x + half.y + half.z);
         let mut search = Search {
             rule,
             mesh,
             local: &local,
             body: &body,
-            half,
-            slack,
+            sieve: Sieve::new(mesh, local, rule.half(), R::BOTH_SIDES),
             found: FacetContacts::new(),
             overlap: false,
             all: out.all(),
         };
-        by_fours(mesh.tree(), &around, |triangles, count| search.look_at(triangles, count));
+        mesh.tree().query(&around, |i| search.look_at(i));
         let Search { mut all, overlap, .. } = search;
         drop_unsupported(&mut all);
         // Clipping may lose what overlaps.
@@ -276,10 +273,8 @@ struct Search<'a, R> {
     mesh: &'a TriMesh,
     local: &'a Frame,
     body: &'a Body<'a>,
-    /// Half the sides of the box around the body.
-    half: Vec3,
-    /// More than rounding, in metres.
-    slack: f64,
+    /// The box around the body.
+    sieve: Sieve<'a>,
     /// Working memory.
     found: FacetContacts,
     /// Whether any triangle overlaps the body.
@@ -288,53 +283,16 @@ struct Search<'a, R> {
 }
 
 impl<R: Rule> Search<'_, R> {
-    /// Looks at the first `count` of four triangles.
-    #[inline(never)]
-    fn look_at(&mut self, triangles: [u32; 4], count: usize) {
-        let at = self.local.position;
-        let normal = normals(self.mesh, triangles);
-        let first = corners(self.mesh, triangles, 0, at);
-        let height = -normal.dot(first);
-        let axes = [0, 1, 2].map(|k| four_times(self.local.axis(k)));
-        let half = [Four::splat(self.half.x), Four::splat(self.half.y), Four::splat(self.half.z)];
-        let own_normal = [normal.dot(axes[0]), normal.dot(axes[1]), normal.dot(axes[2])];
-        let steep = own_normal.map(Four::abs);
-        let margin = Four::splat(self.slack);
-        let depth = steep[0] * half[0] + steep[1] * half[1] + steep[2] * half[2] + margin - height;
-        let reached = [0, 1, 2, 3].map(|l| (R::BOTH_SIDES || height.0[l] >= 0.0) & (depth.0[l] >= 0.0));
-        if reached == [false; 4] {
-            return;
-        }
-        // The corners in the body's own coordinates, by axis.
-        let (second, third) = (corners(self.mesh, triangles, 1, at), corners(self.mesh, triangles, 2, at));
-        let mut own = [[Four::ZERO; 3]; 3];
-        let mut gap = [Four::ZERO; 3];
-        for k in 0..3 {
-            let p = [first.dot(axes[k]), second.dot(axes[k]), third.dot(axes[k])];
-            let (low, high) = (p[0].lesser(p[1]).lesser(p[2]), p[0].greater(p[1]).greater(p[2]));
-            gap[k] = (low - half[k]).greater(-high - half[k]);
-            own[k] = p;
-        }
-        // A triangle beside the box around the body is of interest if the body's lowest point may be below it. That is
-        // not deeper than the box is, and the gap along an axis no wider than what a move up the normal bridges.
-        let mut excess = Four::splat(f64::NEG_INFINITY);
-        for k in 0..3 {
-            excess = excess.greater(gap[k] - depth * steep[k] - margin);
-        }
-        let widest = gap[0].greater(gap[1]).greater(gap[2]);
-        for (l, &i) in triangles[..count].iter().enumerate() {
-            if reached[l] & (excess.0[l] <= 0.0) {
-                let of = |v: [Four; 3]| v.map(|x| x.0[l]);
-                let [x, y, z] = own.map(of);
-                let n = Vec3::from_array(of(own_normal));
-                let corners = [0, 1, 2].map(|k| Vec3::new(x[k], y[k], z[k]));
-                self.consider(i, n, corners, height.0[l], widest.0[l] <= 0.0);
-            }
+    /// Looks at a triangle.
+    #[inline(always)]
+    fn look_at(&mut self, i: u32) {
+        if let Some(Sieved { normal, corners, height, meets_box }) = self.sieve.sift(i) {
+            self.consider(i, normal, corners, height, meets_box);
         }
     }
 
     /// Looks at a triangle by its normal and corners in the body's own coordinates.
-    #[inline(always)]
+    #[inline(never)]
     fn consider(&mut self, i: u32, n: Vec3, corners: [Vec3; 3], height: f64, meets_box: bool) {
         let lowest = self.rule.lowest(n);
         let depth = -height - n.dot(lowest);

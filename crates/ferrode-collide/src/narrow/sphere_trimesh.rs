@@ -1,10 +1,10 @@
-use super::four::{Four, by_fours, corners, normals};
+use super::facet_axes::{greater, lesser};
 use super::merge::{ContactMerge, merge};
 use super::reduce::{keep_wanted, reduce};
 use super::triangle::Facet;
 use crate::shape::Neighbour;
 use crate::{Contacts, Frame, GeomContact, Sphere, TriMesh};
-use ferrode_math::{Aabb, Scalar, Vec3};
+use ferrode_math::{Aabb, Vec3};
 
 /// A ball and a mesh: for each triangle that has the centre before it, the point nearest to the centre, with the
 /// triangle's normal and the part of the overlap along it (as libode), merged as [`TriMesh::with_sphere_merge`] says.
@@ -31,24 +31,23 @@ pub fn sphere_trimesh(sphere: &Sphere, fs: &Frame, mesh: &TriMesh, fm: &Frame, o
     };
     {
         let mut all = out.all();
-        by_fours(mesh.tree(), &around, |numbers, count| {
-            let a = corners(mesh, numbers, 0, center);
-            let height = -normals(mesh, numbers).dot(a);
-            if height.0.iter().all(|&h| !((h >= 0.0) & (h <= r))) {
+        mesh.tree().query(&around, |i| {
+            let n = mesh.normal(i);
+            let a = mesh.corner(i, 0) - center;
+            let height = -n.dot(a);
+            if !((height >= 0.0) & (height <= r)) {
                 return;
             }
-            let (b, c) = (corners(mesh, numbers, 1, center), corners(mesh, numbers, 2, center));
-            // Squared distance of the box around each triangle.
-            let beside = |a: Four, b: Four, c: Four| {
-                let (low, high) = (a.lesser(b).lesser(c), a.greater(b).greater(c));
-                let gap = low.greater(-high).greater(Four::ZERO);
+            let (b, c) = (mesh.corner(i, 1) - center, mesh.corner(i, 2) - center);
+            // Squared distance of the box around the triangle.
+            let beside = |a: f64, b: f64, c: f64| {
+                let (low, high) = (lesser(lesser(a, b), c), greater(greater(a, b), c));
+                let gap = greater(greater(low, -high), 0.0);
                 gap * gap
             };
             let square = beside(a.x, b.x, c.x) + beside(a.y, b.y, c.y) + beside(a.z, b.z, c.z);
-            for (l, &i) in numbers[..count].iter().enumerate() {
-                if (height.0[l] >= 0.0) & (height.0[l] <= r) & (square.0[l] <= r * r * (1.0 + 1e-9)) {
-                    consider(i, &mut all);
-                }
+            if square <= r * r * (1.0 + 1e-9) {
+                consider(i, &mut all);
             }
         });
     }

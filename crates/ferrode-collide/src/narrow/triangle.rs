@@ -1,6 +1,7 @@
 //! A triangle of a surface against a body.
 
 use super::convex::{Touch, touch};
+use super::gjk::{Gap, gjk};
 use super::manifold::{add_face_contacts, add_manifold, add_part_over};
 use super::over_face::over_face;
 use super::support::Body;
@@ -65,6 +66,18 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     }
     let triangle = Body::triangle(facet.corners);
     let first = out.len();
+    // Where the surface goes on beyond every edge without a bend outward, nothing but the face pushes, however deep.
+    let inner = facet.neighbours.iter().all(|n| matches!(n, Neighbour::FlatOrConcave));
+    if inner && body.margin == 0.0 {
+        match gjk(body, &triangle, 0.0) {
+            Gap::Overlap(_) => add_face(body, middle, facet, 0.5, out),
+            _ => add_hidden_contact(body, middle, facet, out),
+        }
+        for c in &mut out.added()[first..] {
+            c.side2 = facet.index;
+        }
+        return;
+    }
     match over_face(body, middle, facet).or_else(|| touch(body, &triangle)) {
         // Beyond an edge within the surface the neighbour bears the body.
         Some(t) if t.normal.dot(n) > 1.0 - SAME && !at_inner_edge(facet, &t) => {
@@ -94,11 +107,16 @@ pub(super) fn face_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     if !faces(body, middle, facet) {
         return;
     }
+    add_face(body, middle, facet, 0.0, out);
+}
+
+/// As [`face_facet`], the contacts further up by a part of their depth.
+fn add_face(body: &Body<'_>, middle: Vec3, facet: &Facet, share: f64, out: &mut Contacts<'_>) {
     let n = facet.normal;
     let most = least_elsewhere(body, facet, middle) / (1.0 - 1e-6);
     add_part_over(body, &facet.corners, n, |p, depth| {
         if depth <= most {
-            let mut c = GeomContact::new(p, n, depth);
+            let mut c = GeomContact::new(p + n * (share * depth), n, depth);
             c.side2 = facet.index;
             out.push_contact(c);
         }
