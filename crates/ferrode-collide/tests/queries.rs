@@ -2,7 +2,7 @@
 
 use ferrode_collide::*;
 use ferrode_math::random::OdeRandom;
-use ferrode_math::{Pose, Quat, Vec3};
+use ferrode_math::{Pose, Quat, Vec3, rotation};
 
 fn random_world(kind: SpaceKind) -> (Colliders, SpaceKey, Vec<GeomKey>) {
     let mut random = OdeRandom::new(11);
@@ -47,17 +47,18 @@ fn rays_agree_with_asking_each_geom() {
                 0 => Vec3::Z * number(),
                 _ => Vec3::new(number(), number(), number()) - from * 0.1,
             };
-            let ray = Geom::new(Ray::new(12.0).unwrap()).at(Ray::pose(from, direction).unwrap());
-            let ray = colliders.add_geom(None, ray).unwrap();
+            let ray = Shape::from(Ray::new(12.0).unwrap());
+            let frame = Frame::new(from, rotation::from_z_axis(direction).unwrap());
             let mut want = Vec::new();
             for &key in &keys {
                 let mut list = Vec::new();
-                colliders.geom_contacts(ray, key, CollideOptions::new(4), &mut list);
-                if colliders.geom(key).unwrap().is_enabled() {
+                let geom = colliders.geom(key).unwrap();
+                let other = (geom.shape(), geom.frame());
+                narrow::collide_frames((&ray, &frame), other, CollideOptions::new(4), &mut list);
+                if geom.is_enabled() {
                     want.extend(list.iter().map(|c| (key, c.point.depth)));
                 }
             }
-            colliders.remove_geom(ray).unwrap();
             want.sort_by(|a, b| a.1.total_cmp(&b.1));
             colliders.ray_cast_all(space, from, direction, 12.0, |_, _| true, &mut hits).unwrap();
             let got: Vec<_> = hits.iter().map(|h| (h.geom, h.distance)).collect();

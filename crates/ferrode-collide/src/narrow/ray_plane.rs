@@ -5,14 +5,12 @@ use crate::{Contacts, Frame, Plane, Ray};
 pub fn ray_plane(ray: &Ray, fr: &Frame, plane: &Plane, _: &Frame, out: &mut Contacts<'_>) {
     let (o, u) = ray.line(fr);
     let slope = plane.normal().dot(u);
-    // A direction that is no unit vector is none.
-    if !(slope != 0.0 && slope.abs() < 2.0) {
-        return;
-    }
-    // Divided before anything is asked, and only one thing asked: branches cost more.
+    // Divided before anything is asked, and little asked: branches that cannot be foretold cost more. Along the plane the
+    // quotient is infinite, or no number. A direction that is no unit vector is none.
     let (depth, alpha) = (plane.depth(o), plane.depth(o) / slope);
-    if lesser(alpha, ray.length() - alpha) >= 0.0 {
-        let n = if depth > 0.0 { -plane.normal() } else { plane.normal() };
-        out.push_sound(o + u * alpha, n, alpha);
+    if lesser(alpha, ray.length() - alpha) >= 0.0 && slope.abs() < 2.0 {
+        // From below the other way.
+        let side = 1f64.copysign(0.0 - depth);
+        out.push_sound(o + u * alpha, plane.normal() * side, alpha);
     }
 }

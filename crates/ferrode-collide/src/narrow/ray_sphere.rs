@@ -20,5 +20,7 @@ pub fn ray_sphere(ray: &Ray, fr: &Frame, sphere: &Sphere, fs: &Frame, out: &mut 
         return;
     }
     let outward = unit_of_length(q + u * alpha, r).unwrap_or(-u);
-    out.push_sound(o + u * alpha, if q.length_squared() >= r * r { outward } else { -outward }, alpha);
+    // From within the other way; not by a branch, which could not be foretold.
+    let side = 1f64.copysign(q.length_squared() - r * r);
+    out.push_sound(o + u * alpha, outward * side, alpha);
 }
