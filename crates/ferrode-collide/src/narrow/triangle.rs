@@ -1,7 +1,7 @@
 //! A triangle of a surface against a body.
 
 use super::convex::{Touch, touch};
-use super::gjk::{Gap, gjk};
+use super::gjk::{EXACT, Gap, gjk_from};
 use super::manifold::{add_face_contacts, add_manifold, add_part_over};
 use super::over_face::over_face;
 use super::support::Body;
@@ -69,7 +69,7 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     // Where the surface goes on beyond every edge without a bend outward, nothing but the face pushes, however deep.
     let inner = facet.neighbours.iter().all(|n| matches!(n, Neighbour::FlatOrConcave));
     if inner && body.margin == 0.0 {
-        match gjk(body, &triangle, 0.0) {
+        match gjk_from(body, &triangle, 0.0, body.center - triangle.center, EXACT) {
             Gap::Overlap(_) => add_face(body, middle, facet, 0.5, out),
             _ => add_hidden_contact(body, middle, facet, out),
         }
