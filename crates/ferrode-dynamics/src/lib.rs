@@ -38,6 +38,7 @@ mod sleep;
 mod softness;
 mod solve;
 mod step;
+mod timing;
 mod world;
 
 pub use body::{Body, BodyKey, FiniteRotation, MovedCallback};
@@ -56,4 +57,5 @@ pub use softness::Softness;
 pub use solve::direct::{DirectSettings, FrictionLaw};
 pub use solve::substep::{ContactManifold, MANIFOLD_POINTS, ManifoldPoint, Spring, SubstepSettings};
 pub use step::Stepper;
+pub use timing::{StepClock, StepTimes};
 pub use world::{QuickSettings, World};

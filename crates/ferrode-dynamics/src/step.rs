@@ -9,6 +9,7 @@ use crate::island::Islands;
 use crate::joint::Joint;
 use crate::rows::{JointRows, Row, RowCount, Wrench};
 use crate::solve::{direct, quick, substep};
+use crate::timing::Phase;
 use crate::{Error, StepReport, World, gyroscopic, integrate};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Vec3};
@@ -148,6 +149,7 @@ impl World {
         crate::softness::step_size(h)?;
         debug_assert_eq!(self.check(), Ok(()));
         report.clear();
+        self.timing.begin();
         let mut scratch = core::mem::take(&mut self.scratch);
         let Scratch { islands, island, direct, quick, .. } = &mut scratch;
 
@@ -170,6 +172,7 @@ impl World {
                 direct::arrange(&mut island.spans, direct);
             }
             self.write_rows(island, &ctx);
+            self.timing.spent_on(Phase::Assembly);
             let solved = match stepper {
                 Stepper::Direct => {
                     let number = report.islands;
@@ -192,7 +195,9 @@ impl World {
                 Stepper::Direct => direct::sum_forces(island, direct),
                 _ => quick::update_velocities(island, h, quick),
             }
+            self.timing.spent_on(Phase::Solve);
             self.move_bodies(bodies, island, (stepper, h), moved, report);
+            self.timing.spent_on(Phase::Integrate);
         }
         direct::end_step(direct);
         self.scratch = scratch;

@@ -92,6 +92,7 @@ pub struct World {
     pub(crate) topology_version: u64,
     /// Numbers given to groups of bodies that fell asleep together.
     pub(crate) sleep_groups: u64,
+    pub(crate) timing: crate::timing::Timing,
     pub(crate) scratch: Scratch,
 }
 
@@ -115,6 +116,7 @@ impl World {
             user_data: 0,
             topology_version: 0,
             sleep_groups: 0,
+            timing: crate::timing::Timing::default(),
             scratch: Scratch::default(),
         }
     }

@@ -1,7 +1,7 @@
 //! One step of a world with shapes.
 
 use crate::{Error, World};
-use ferrode_dynamics::{StepReport, Stepper};
+use ferrode_dynamics::{StepReport, StepTimes, Stepper};
 
 /// What happened in a step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +30,24 @@ impl World {
     pub fn step(&mut self, h: f64) -> Result<Step, Error> {
         self.dynamics.impulse_to_force(h, ferrode_math::Vec3::ZERO)?;
         self.last_h = h;
+        let clock = self.dynamics.step_clock();
+        let start = clock.map(|clock| clock());
+        let done = self.step_with_stepper(h);
+        if let (Some(clock), Some(start), Some(times)) = (clock, start, self.dynamics.step_times()) {
+            // All that is not the stepping of bodies.
+            self.collision_time = clock() - start - times.total();
+        }
+        done
+    }
+
+    /// Where the time of the last step went; `None` without a [clock](ferrode_dynamics::World::set_step_clock).
+    pub fn step_times(&self) -> Option<StepTimes> {
+        let mut times = self.dynamics.step_times()?;
+        times.collision = self.collision_time.max(0.0);
+        Some(times)
+    }
+
+    fn step_with_stepper(&mut self, h: f64) -> Result<Step, Error> {
         if self.stepper == Stepper::Substep {
             return self.step_substep(h);
         }

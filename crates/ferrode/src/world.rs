@@ -42,6 +42,8 @@ pub struct World {
     /// What rounding has kept out of `time` so far.
     pub(crate) time_rest: f64,
     pub(crate) steps: u64,
+    /// Time of the last step that was spent on pairs and contacts, s.
+    pub(crate) collision_time: f64,
     pub(crate) scratch: Scratch,
     /// What `Substep` keeps of the shapes, once it has stepped.
     pub(crate) pipeline: Option<Box<crate::substep::Pipeline>>,
@@ -127,6 +129,7 @@ impl World {
             time: 0.0,
             time_rest: 0.0,
             steps: 0,
+            collision_time: 0.0,
             scratch: Scratch::default(),
             pipeline: None,
             lazy_contacts: OnceLock::new(),

@@ -5,7 +5,7 @@
 
 use super::axis::AxisFrame;
 use super::limit_motor::{LimitMotor, LimitMotors, RowAxis};
-use super::{JointError, JointModel, JointMut, JointRef};
+use super::{JointError, JointModel, JointMut, JointRef, LimitedAxis};
 use crate::Error;
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite_number, unit};
@@ -150,6 +150,26 @@ impl JointModel for AMotor {
         for i in (0..3).filter(|i| self.has_row(*i, &axes)) {
             self.axes[i].limit_motor.write_row(ends, ctx, RowAxis::Angular(axes[i]), i as u8, out, &mut at);
         }
+    }
+
+    fn limited_axes(&self, ends: &Ends<'_>) -> Vec<LimitedAxis> {
+        let axes = self.effective_axes(ends);
+        let [g0, g1, g2] = self.world_axes(ends);
+        let angles = match self.mode {
+            AMotorMode::Euler => self.euler_angles(ends),
+            AMotorMode::User => self.axes.each_ref().map(|axis| axis.angle),
+        };
+        // Across the axis that is fixed in the joint's first body, the one along with that; the others along with the cross.
+        let own = if ends.reverse { 2 } else { 0 };
+        let first = ends.a().rotation * plane_space(ends.a().rotation.transpose_mul(axes[own])).0;
+        let hands = if ends.reverse { [g1, g2, first] } else { [first, g0, g1] };
+        let sign = if self.mode == AMotorMode::Euler { ends.sign() } else { 1.0 };
+        let there = (0..self.count.min(3)).filter(|i| axes[*i] != Vec3::ZERO);
+        there
+            .map(|i| {
+                LimitedAxis::turning(i + 1, axes[i] * sign, hands[i], angles[i], &self.axes[i].limit_motor)
+            })
+            .collect()
     }
 
     fn set_param(&mut self, n: i32, value: f64) {

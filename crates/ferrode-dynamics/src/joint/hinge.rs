@@ -3,12 +3,12 @@
 use super::anchor::Anchors;
 use super::axis::{hinge_angle, reset_axes, set_axes, write_alignment_rows};
 use super::limit_motor::{LimitMotor, RowAxis, limit_motors};
-use super::{JointError, JointModel, JointMut, JointRef};
+use super::{JointError, JointModel, JointMut, JointRef, LimitedAxis};
 use crate::Error;
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, finite_number};
 use crate::rows::{JointRows, RowCount};
-use ferrode_math::{Quat, Vec3};
+use ferrode_math::{Quat, Vec3, plane_space};
 
 /// The hinge's data: anchor, axis, the relative rotation that counts as angle 0, and the stops and motor.
 #[derive(Clone, Debug)]
@@ -74,6 +74,12 @@ impl JointModel for Hinge {
         self.anchors = Anchors::at(ends, p);
         self.axes = reset_axes(ends, self.axes[0]);
         self.initial = ends.relative_rotation();
+    }
+
+    fn limited_axes(&self, ends: &Ends<'_>) -> Vec<LimitedAxis> {
+        let hand = ends.a().rotation * plane_space(self.axes[0]).0;
+        let angle = self.internal_angle(ends);
+        vec![LimitedAxis::turning(1, self.axis(ends), hand, angle, &self.limit_motor)]
     }
 
     fn set_param(&mut self, n: i32, value: f64) {

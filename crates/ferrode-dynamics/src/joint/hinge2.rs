@@ -4,7 +4,7 @@
 use super::anchor::Anchors;
 use super::axis::angle_between;
 use super::limit_motor::{LimitMotor, RowAxis, limit_motors};
-use super::{JointError, JointModel, JointMut, JointRef, Param};
+use super::{JointError, JointModel, JointMut, JointRef, LimitedAxis, Param};
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, finite_number, unit};
 use crate::rows::{JointRows, RowCount};
@@ -127,6 +127,13 @@ impl JointModel for Hinge2 {
         self.anchors = Anchors::at(ends, self.anchors.world1(ends));
         self.record_angle_between(ends);
         self.record_references(ends);
+    }
+
+    fn limited_axes(&self, ends: &Ends<'_>) -> Vec<LimitedAxis> {
+        // Axis 2 has no stops.
+        let hand = ends.a().rotation * self.reference1[0];
+        let (axis, _) = self.world_axes(ends);
+        vec![LimitedAxis::turning(1, axis, hand, self.angle1(ends), &self.limit_motor1)]
     }
 
     fn set_param(&mut self, n: i32, value: f64) {

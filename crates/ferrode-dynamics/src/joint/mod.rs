@@ -14,6 +14,7 @@ mod fixed;
 mod hinge;
 mod hinge2;
 mod limit_motor;
+mod limited_axis;
 mod lmotor;
 mod null;
 mod orientation;
@@ -38,6 +39,7 @@ pub use fixed::Fixed;
 pub use hinge::Hinge;
 pub use hinge2::Hinge2;
 pub use limit_motor::{LimitMotor, LimitMotors, LimitState, OneLimitMotor};
+pub use limited_axis::LimitedAxis;
 pub use lmotor::LMotor;
 pub use null::Null;
 pub use own_softness::OwnSoftness;
@@ -133,6 +135,11 @@ pub(crate) trait JointModel {
 
     /// The joint's own numbers as ODE's interchange format names them, in body coordinates.
     fn details(&self) -> Vec<(&'static str, Vec<f64>)> {
+        Vec::new()
+    }
+
+    /// The axes that can have stops, of an attached joint.
+    fn limited_axes(&self, _ends: &Ends<'_>) -> Vec<LimitedAxis> {
         Vec::new()
     }
 

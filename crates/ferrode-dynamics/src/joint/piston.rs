@@ -3,7 +3,7 @@
 use super::anchor::Anchors;
 use super::axis::{angle_between, hinge_angle, reset_axes, set_axes, write_alignment_rows};
 use super::limit_motor::{LimitMotor, RowAxis, limit_motors};
-use super::{JointError, JointModel, JointMut, JointRef};
+use super::{JointError, JointModel, JointMut, JointRef, LimitedAxis};
 use crate::Error;
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, finite_number};
@@ -103,6 +103,17 @@ impl JointModel for Piston {
         self.anchors = Anchors::at(ends, p);
         self.axes = reset_axes(ends, self.axes[0]);
         self.initial = ends.relative_rotation();
+    }
+
+    fn limited_axes(&self, ends: &Ends<'_>) -> Vec<LimitedAxis> {
+        let axis = self.axis(ends);
+        let hand = ends.a().rotation * plane_space(self.axes[0]).0;
+        let angle = self.internal_angle(ends);
+        // As in ODE any finite stop of the angle counts, also beyond ±π.
+        vec![
+            LimitedAxis::sliding(1, axis * ends.sign(), self.position(ends), &self.prismatic),
+            LimitedAxis::turning(2, axis, hand, angle, &self.rotation).with_any_stop(&self.rotation),
+        ]
     }
 
     fn set_param(&mut self, n: i32, value: f64) {

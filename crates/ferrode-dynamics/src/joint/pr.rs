@@ -4,7 +4,7 @@
 use super::anchor::Anchors;
 use super::axis::{angle_between, hinge_angle, reset_axes, set_axes};
 use super::limit_motor::{LimitMotor, RowAxis, limit_motors};
-use super::{JointError, JointModel, JointMut, JointRef};
+use super::{JointError, JointModel, JointMut, JointRef, LimitedAxis};
 use crate::Error;
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, finite_number, unit};
@@ -122,6 +122,16 @@ impl JointModel for PR {
         self.anchors = Anchors::at(ends, p);
         self.rotoide_axes = reset_axes(ends, self.rotoide_axes[0]);
         self.initial = ends.relative_rotation();
+    }
+
+    fn limited_axes(&self, ends: &Ends<'_>) -> Vec<LimitedAxis> {
+        let along = self.prismatic_axis(ends) * ends.sign();
+        let hand = ends.a().rotation * self.prismatic_axis;
+        let angle = self.internal_angle(ends);
+        vec![
+            LimitedAxis::sliding(1, along, self.position(ends), &self.prismatic),
+            LimitedAxis::turning(2, self.rotoide_axis(ends), hand, angle, &self.rotoide),
+        ]
     }
 
     fn set_param(&mut self, n: i32, value: f64) {

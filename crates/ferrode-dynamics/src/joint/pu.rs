@@ -3,7 +3,7 @@
 use super::anchor::Anchors;
 use super::limit_motor::{LimitMotor, RowAxis, limit_motors};
 use super::universal_angles::UniversalAxes;
-use super::{JointError, JointModel, JointMut, JointRef};
+use super::{JointError, JointModel, JointMut, JointRef, LimitedAxis};
 use crate::Error;
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, finite_number, unit};
@@ -103,6 +103,13 @@ impl JointModel for PU {
         self.anchors = Anchors::at(ends, p);
         self.axes.reattach(ends);
         self.axes.reset_angles(ends);
+    }
+
+    fn limited_axes(&self, ends: &Ends<'_>) -> Vec<LimitedAxis> {
+        let mut axes = self.axes.limited(ends, [&self.limit_motor1, &self.limit_motor2]);
+        let along = self.prismatic_axis(ends) * ends.sign();
+        axes.push(LimitedAxis::sliding(3, along, self.position(ends), &self.prismatic));
+        axes
     }
 
     fn set_param(&mut self, n: i32, value: f64) {

@@ -2,7 +2,7 @@
 
 use super::axis::set_axes;
 use super::limit_motor::{LimitMotor, RowAxis, limit_motors, midpoint_torque};
-use super::{JointError, JointModel, JointMut, JointRef, orientation};
+use super::{JointError, JointModel, JointMut, JointRef, LimitedAxis, orientation};
 use crate::Error;
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, finite_number};
@@ -88,6 +88,11 @@ impl JointModel for Slider {
 
     fn attached(&mut self, ends: &Ends<'_>) {
         self.reset(ends);
+    }
+
+    fn limited_axes(&self, ends: &Ends<'_>) -> Vec<LimitedAxis> {
+        let axis = self.axis(ends) * ends.sign();
+        vec![LimitedAxis::sliding(1, axis, self.position(ends), &self.limit_motor)]
     }
 
     fn set_param(&mut self, n: i32, value: f64) {

@@ -4,7 +4,7 @@
 use super::anchor::Anchors;
 use super::limit_motor::{LimitMotor, RowAxis, limit_motors};
 use super::universal_angles::{UniversalAxes, frame};
-use super::{JointError, JointModel, JointMut, JointRef};
+use super::{JointError, JointModel, JointMut, JointRef, LimitedAxis};
 use crate::Error;
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, finite_number, unit};
@@ -70,6 +70,10 @@ impl JointModel for Universal {
         self.anchors = Anchors::at(ends, p);
         self.axes.reattach(ends);
         self.axes.reset_angles(ends);
+    }
+
+    fn limited_axes(&self, ends: &Ends<'_>) -> Vec<LimitedAxis> {
+        self.axes.limited(ends, [&self.limit_motor1, &self.limit_motor2])
     }
 
     fn set_param(&mut self, n: i32, value: f64) {

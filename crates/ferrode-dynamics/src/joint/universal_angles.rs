@@ -4,6 +4,7 @@
 //! yokes. Each angle is the turn of a body relative to that frame, since the axes were set.
 
 use super::axis::{angle_between, hinge_angle};
+use super::{LimitMotor, LimitedAxis};
 use crate::ends::{Ends, StepContext};
 use crate::rows::Row;
 use core::f64::consts::FRAC_PI_2;
@@ -100,6 +101,17 @@ impl UniversalAxes {
     fn turn2(&self, ends: &Ends<'_>, ba: Quat) -> f64 {
         let relative = ends.b().quaternion.conjugate() * ba * self.initial[1].conjugate();
         -hinge_angle(relative, self.local[1])
+    }
+
+    /// The ranges of both axes: axis 1 turns the first body about the cross, axis 2 the cross about the second body.
+    pub fn limited(&self, ends: &Ends<'_>, motors: [&LimitMotor; 2]) -> Vec<LimitedAxis> {
+        let (a, b) = (self.world1(ends), self.world2(ends));
+        let angles = self.angles(ends);
+        let hand = ends.a().rotation * plane_space(self.local[0]).0;
+        vec![
+            LimitedAxis::turning(1, a, hand, angles[0], motors[0]),
+            LimitedAxis::turning(2, b, a, angles[1], motors[1]),
+        ]
     }
 
     /// Fills the row that keeps the axes perpendicular: about the normal of both, with the world's ERP and CFM. Parallel

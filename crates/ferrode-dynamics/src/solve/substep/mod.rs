@@ -31,6 +31,7 @@ use crate::arena::NIL;
 use crate::body::BodyKey;
 use crate::foreign::MovedObserver;
 use crate::joint::JointKind;
+use crate::timing::Phase;
 use crate::{Error, StepReport, Surface, World};
 use bodies::{SolverBodies, rotation_of};
 use colour::Colouring;
@@ -127,6 +128,7 @@ impl World {
         for manifold in manifolds.iter() {
             manifold::check_surface(manifold, surfaces)?;
         }
+        self.timing.begin();
         let mut report = StepReport::default();
         let mut work = core::mem::take(&mut self.scratch.substep);
         self.quarantine_unusable_bodies(&mut report);
@@ -148,6 +150,7 @@ impl World {
             report.largest_island_rows = report.rows;
             self.move_awake(h, &mut work, moved, &mut report);
             self.put_islands_to_sleep(h, &mut work);
+            self.timing.spent_on(Phase::Integrate);
         }
         work.last_h = h;
         self.scratch.substep = work;
@@ -374,6 +377,7 @@ impl World {
             ratio,
         };
         joints.begin(bodies, &self.bodies);
+        self.timing.spent_on(Phase::Assembly);
         let dt = part as f32;
         for i in 0..settings.substeps {
             bodies.integrate_velocities(dt, i == 0);
@@ -394,6 +398,7 @@ impl World {
         contacts.store(level, manifolds);
         joints.remember(memory, &self.joints);
         joints.write_feedback(h, &mut self.joints);
+        self.timing.spent_on(Phase::Solve);
     }
 
     /// Tells contact joints that ask for it what they pushed with at the end of the step.
