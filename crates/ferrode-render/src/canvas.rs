@@ -5,7 +5,7 @@ use crate::targets::texture;
 use crate::{Camera, Gpu, Picture, Quality, RenderError, Renderer, Scene};
 
 /// The format of pictures in memory.
-pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
 /// Draws scenes into pictures of one size.
 #[derive(Debug)]
@@ -47,6 +47,11 @@ impl Canvas {
     /// The driver.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// The format of the texture that is drawn into, for what draws over scenes.
+    pub const fn format() -> wgpu::TextureFormat {
+        FORMAT
     }
 
     /// Width and height in pixels.

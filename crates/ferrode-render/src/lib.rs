@@ -3,6 +3,7 @@
 
 mod camera;
 mod canvas;
+mod draws;
 mod error;
 mod gpu;
 mod instance;
@@ -18,6 +19,8 @@ mod scene;
 mod shadow;
 mod shapes;
 mod targets;
+mod uniforms;
+mod view_cone;
 mod window;
 
 pub use camera::Camera;
@@ -31,7 +34,7 @@ pub use picture::Picture;
 pub use quality::Quality;
 pub use renderer::Renderer;
 pub use scene::{Ground, Layer, Scene};
-pub use window::{Frame, WindowSurface};
+pub use window::{Frame, Submitted, WindowSurface};
 
 /// The renderer's own window and drawing library, for those who add passes of their own (such as a user interface).
 pub use wgpu;

@@ -35,6 +35,8 @@ pub struct Mesh {
     pub(crate) indices: Vec<u32>,
     /// Corners in model coordinates, for outlines and bounds.
     radius: f64,
+    /// Its inside is never seen.
+    pub(crate) closed: bool,
 }
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
@@ -47,9 +49,10 @@ pub(crate) fn to_f32(v: Vec3) -> [f32; 3] {
 }
 
 impl Mesh {
+    /// A closed surface.
     pub(crate) fn from_parts(vertices: Vec<Vertex>, indices: Vec<u32>) -> Self {
         let radius = vertices.iter().map(|v| length(v.local)).fold(0.0, f64::max);
-        Self { id: NEXT.fetch_add(1, Ordering::Relaxed), vertices, indices, radius }
+        Self { id: NEXT.fetch_add(1, Ordering::Relaxed), vertices, indices, radius, closed: true }
     }
 
     /// A mesh of triangles. Edges between faces that are nearly in line are shaded smoothly, others sharply. Triangles that
@@ -82,7 +85,7 @@ impl Mesh {
             }
         }
         let indices = (0..vertices.len() as u32).collect();
-        Self::from_parts(vertices, indices)
+        Self { closed: false, ..Self::from_parts(vertices, indices) }
     }
 
     /// How far its corners are from its origin.

@@ -3,22 +3,65 @@
 use crate::Quality;
 use crate::instance::INSTANCE_BYTES;
 use crate::targets::DEPTH;
+use std::collections::BTreeMap;
 use wgpu::{VertexFormat, VertexStepMode};
 
 /// Size of the shader's `Globals` in bytes.
 pub const GLOBALS_BYTES: u64 = (2 * 16 + 8 * 4) * 4;
 
-/// The programs of the graphics card.
+/// A kind of thing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// Shapes that are seen from outside only.
+    Closed,
+    /// Shapes that are seen from both sides.
+    Open,
+    /// Shapes through which others shine.
+    Glass,
+    /// Grounds that nothing shines through.
+    Ground,
+    /// Grounds as veils.
+    Veil,
+    /// Behind all else, where nothing was drawn.
+    Sky,
+    /// Lines.
+    Lines,
+}
+
+/// A kind of thing, and what its program must be able to do: each program does no more than it must.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Look {
+    /// The kind.
+    pub kind: Kind,
+    /// Which patterns there are: none (0), some without noise (1), any (2).
+    pub patterns: u8,
+    /// There are clouds in the sky.
+    pub clouds: bool,
+}
+
+/// The level of a pattern's number for [`Look::patterns`].
+pub fn pattern_level(pattern: f32) -> u8 {
+    match pattern {
+        p if p < 0.5 => 0,
+        p if p < 3.5 => 1,
+        _ => 2,
+    }
+}
+
+/// The programs of the graphics card, made when they are first needed.
 #[derive(Debug)]
 pub struct Pipelines {
+    device: wgpu::Device,
+    format: wgpu::TextureFormat,
+    quality: Quality,
+    module: wgpu::ShaderModule,
+    lit: wgpu::PipelineLayout,
     pub globals_layout: wgpu::BindGroupLayout,
     pub shadow_layout: wgpu::BindGroupLayout,
-    pub shadow: wgpu::RenderPipeline,
-    pub shapes: wgpu::RenderPipeline,
-    pub glass: wgpu::RenderPipeline,
-    pub sky: wgpu::RenderPipeline,
-    pub ground: wgpu::RenderPipeline,
-    pub lines: wgpu::RenderPipeline,
+    /// Shadows of shapes of either kind.
+    pub shadow_closed: wgpu::RenderPipeline,
+    pub shadow_open: wgpu::RenderPipeline,
+    made: BTreeMap<Look, wgpu::RenderPipeline>,
 }
 
 /// Formats of the corners of shapes: local, core, normal.
@@ -44,18 +87,64 @@ impl Attributes {
     }
 }
 
-/// What differs from one pipeline to the next.
-struct Kind<'a> {
-    name: &'a str,
-    buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    strip: bool,
-    blend: bool,
-    /// Depths are compared and, if `true`, written; `None`: always in front, and nothing written.
-    depth: Option<bool>,
+fn shape_attributes() -> [Attributes; 2] {
+    let instance = Attributes::new(&SIX, 3);
+    debug_assert_eq!(instance.1, INSTANCE_BYTES);
+    [Attributes::new(&CORNER, 0), instance]
+}
+
+/// What a pipeline does with depths, which are 1 at the near plane and 0 infinitely far away.
+#[derive(Clone, Copy, PartialEq)]
+enum Depth {
+    /// Nearer things hide farther ones.
+    Written,
+    /// What was drawn before hides what is behind it.
+    Compared,
+    /// At infinity: hidden by everything.
+    Behind,
+}
+
+impl Kind {
+    /// Prefix of the entry points.
+    fn name(self, plain: bool) -> &'static str {
+        match self {
+            Self::Closed if plain => "solid",
+            Self::Ground if plain => "floor",
+            Self::Closed | Self::Open | Self::Glass => "shape",
+            Self::Ground | Self::Veil => "ground",
+            Self::Sky => "sky",
+            Self::Lines => "line",
+        }
+    }
+
+    fn depth(self) -> Depth {
+        match self {
+            Self::Closed | Self::Open | Self::Ground | Self::Veil | Self::Lines => Depth::Written,
+            Self::Glass => Depth::Compared,
+            Self::Sky => Depth::Behind,
+        }
+    }
+
+    fn blends(self) -> bool {
+        matches!(self, Self::Glass | Self::Veil | Self::Lines)
+    }
+
+    fn primitive(self) -> wgpu::PrimitiveState {
+        let strip = matches!(self, Self::Ground | Self::Veil | Self::Lines);
+        wgpu::PrimitiveState {
+            topology: if strip {
+                wgpu::PrimitiveTopology::TriangleStrip
+            } else {
+                wgpu::PrimitiveTopology::TriangleList
+            },
+            cull_mode: (self == Self::Closed).then_some(wgpu::Face::Back),
+            ..Default::default()
+        }
+    }
 }
 
 impl Pipelines {
-    /// Compiles all for a colour format.
+    /// For a colour format.
     pub fn new(device: &wgpu::Device, format: wgpu::TextureFormat, quality: &Quality) -> Self {
         let module = device.create_shader_module(wgpu::include_wgsl!("shader.wgsl"));
         let globals_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -95,101 +184,121 @@ impl Pipelines {
             })
         };
         let lit = layout(&[Some(&globals_layout), Some(&shadow_layout)]);
-        let constants = [("shadow_samples", f64::from(quality.shadow_samples.max(1)))];
-        let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
-        let make = |kind: Kind<'_>| {
-            let (vertex, fragment) = (format!("{}_vertex", kind.name), format!("{}_fragment", kind.name));
-            let compare = if kind.depth.is_some() {
-                wgpu::CompareFunction::Greater
-            } else {
-                wgpu::CompareFunction::Always
-            };
-            device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(kind.name),
-                layout: Some(&lit),
-                vertex: wgpu::VertexState {
-                    module: &module,
-                    entry_point: Some(&vertex),
-                    compilation_options: options(),
-                    buffers: kind.buffers,
-                },
-                primitive: wgpu::PrimitiveState {
-                    topology: if kind.strip {
-                        wgpu::PrimitiveTopology::TriangleStrip
-                    } else {
-                        wgpu::PrimitiveTopology::TriangleList
-                    },
-                    ..Default::default()
-                },
-                depth_stencil: Some(wgpu::DepthStencilState {
-                    format: DEPTH,
-                    depth_write_enabled: Some(kind.depth == Some(true)),
-                    depth_compare: Some(compare),
-                    stencil: wgpu::StencilState::default(),
-                    bias: wgpu::DepthBiasState::default(),
-                }),
-                multisample: wgpu::MultisampleState { count: quality.samples, ..Default::default() },
-                fragment: Some(wgpu::FragmentState {
-                    module: &module,
-                    entry_point: Some(&fragment),
-                    compilation_options: options(),
-                    targets: &[Some(wgpu::ColorTargetState {
-                        format,
-                        blend: kind.blend.then_some(wgpu::BlendState::ALPHA_BLENDING),
-                        write_mask: wgpu::ColorWrites::ALL,
-                    })],
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-        };
-        let corner = Attributes::new(&CORNER, 0);
-        let instance = Attributes::new(&SIX, 3);
-        debug_assert_eq!(instance.1, INSTANCE_BYTES);
-        let shape = [corner.layout(VertexStepMode::Vertex), instance.layout(VertexStepMode::Instance)];
-        let plane = Attributes::new(&SIX[..5], 0);
-        let segment = Attributes::new(&SIX[..3], 0);
-        let kind = |name, buffers| Kind { name, buffers, strip: false, blend: false, depth: Some(true) };
         let only_globals = layout(&[Some(&globals_layout)]);
-        let shadow = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("shadow"),
-            layout: Some(&only_globals),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("shadow_vertex"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &shape,
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Less),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState { constant: 1, slope_scale: 1.5, clamp: 0.0 },
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: None,
-            multiview_mask: None,
-            cache: None,
-        });
+        let shadow = |cull_mode| shadow_pipeline(device, &module, &only_globals, cull_mode);
         Self {
-            shadow,
-            shapes: make(kind("shape", &shape)),
-            glass: make(Kind { blend: true, depth: Some(false), ..kind("shape", &shape) }),
-            sky: make(Kind { depth: None, ..kind("sky", &[]) }),
-            ground: make(Kind {
-                strip: true,
-                blend: true,
-                ..kind("ground", &[plane.layout(VertexStepMode::Instance)])
-            }),
-            lines: make(Kind {
-                strip: true,
-                blend: true,
-                ..kind("line", &[segment.layout(VertexStepMode::Instance)])
-            }),
+            shadow_closed: shadow(Some(wgpu::Face::Back)),
+            shadow_open: shadow(None),
+            device: device.clone(),
+            format,
+            quality: *quality,
+            module,
+            lit,
             globals_layout,
             shadow_layout,
+            made: BTreeMap::new(),
         }
     }
+
+    /// Sees to it that a program is there.
+    pub fn prepare(&mut self, look: Look) {
+        if !self.made.contains_key(&look) {
+            let made = self.make(look);
+            self.made.insert(look, made);
+        }
+    }
+
+    /// The program for a look, which was [prepared](Self::prepare).
+    pub fn get(&self, look: Look) -> Option<&wgpu::RenderPipeline> {
+        self.made.get(&look)
+    }
+
+    fn make(&self, look: Look) -> wgpu::RenderPipeline {
+        let kind = look.kind;
+        let constants = [
+            ("shadow_samples", f64::from(self.quality.shadow_samples.max(1))),
+            ("patterns", f64::from(look.patterns)),
+            ("clouded", f64::from(u8::from(look.clouds))),
+        ];
+        let options = || wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        let shape = shape_attributes();
+        let planes = Attributes::new(&SIX[..5], 0);
+        let segments = Attributes::new(&SIX[..3], 0);
+        let buffers = match kind {
+            Kind::Closed | Kind::Open | Kind::Glass => {
+                vec![shape[0].layout(VertexStepMode::Vertex), shape[1].layout(VertexStepMode::Instance)]
+            }
+            Kind::Ground | Kind::Veil => vec![planes.layout(VertexStepMode::Instance)],
+            Kind::Lines => vec![segments.layout(VertexStepMode::Instance)],
+            Kind::Sky => vec![],
+        };
+        let name = kind.name(self.quality.plain);
+        let (vertex, fragment) = (format!("{name}_vertex"), format!("{name}_fragment"));
+        let compare = match kind.depth() {
+            Depth::Behind => wgpu::CompareFunction::Equal,
+            Depth::Written | Depth::Compared => wgpu::CompareFunction::Greater,
+        };
+        self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(name),
+            layout: Some(&self.lit),
+            vertex: wgpu::VertexState {
+                module: &self.module,
+                entry_point: Some(&vertex),
+                compilation_options: options(),
+                buffers: &buffers,
+            },
+            primitive: kind.primitive(),
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: DEPTH,
+                depth_write_enabled: Some(kind.depth() == Depth::Written),
+                depth_compare: Some(compare),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState { count: self.quality.samples, ..Default::default() },
+            fragment: Some(wgpu::FragmentState {
+                module: &self.module,
+                entry_point: Some(&fragment),
+                compilation_options: options(),
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: self.format,
+                    blend: kind.blends().then_some(wgpu::BlendState::ALPHA_BLENDING),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}
+
+fn shadow_pipeline(
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    layout: &wgpu::PipelineLayout,
+    cull_mode: Option<wgpu::Face>,
+) -> wgpu::RenderPipeline {
+    let shape = shape_attributes();
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("shadow"),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("shadow_vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[shape[0].layout(VertexStepMode::Vertex), shape[1].layout(VertexStepMode::Instance)],
+        },
+        primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Less),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState { constant: 1, slope_scale: 1.5, clamp: 0.0 },
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: None,
+        multiview_mask: None,
+        cache: None,
+    })
 }

@@ -11,16 +11,23 @@ pub struct Quality {
     pub shadow_samples: u32,
     /// Boxes get rounded edges, that catch the light.
     pub rounded_boxes: bool,
+    /// Round shapes that look small get fewer corners, surfaces no highlights.
+    pub plain: bool,
 }
 
 impl Quality {
     /// For windows.
     pub const fn live() -> Self {
-        Self { samples: 4, shadow_map: 1536, shadow_samples: 4, rounded_boxes: true }
+        Self { samples: 4, shadow_map: 1536, shadow_samples: 4, rounded_boxes: true, plain: false }
     }
 
     /// For pictures to keep.
     pub const fn fine() -> Self {
-        Self { samples: 4, shadow_map: 4096, shadow_samples: 24, rounded_boxes: true }
+        Self { samples: 4, shadow_map: 4096, shadow_samples: 24, rounded_boxes: true, plain: false }
+    }
+
+    /// For windows that the processor draws: each pixel costs time there, not each triangle alone.
+    pub const fn plain() -> Self {
+        Self { samples: 1, shadow_map: 1024, shadow_samples: 1, rounded_boxes: false, plain: true }
     }
 }

@@ -1,14 +1,17 @@
 //! Draws scenes into textures.
 //!
-//! One picture is: the shadow map as the sun sees it → sky → shapes, ground, lines with depths → glass from far to near → the
-//! layer over all, on depths of its own. Shapes with the same mesh are drawn by one call.
+//! One picture is: the shadow map as the sun sees it, if it changed → shapes, ground → sky where nothing is → lines with depths →
+//! glass from far to near → the layer over all, on depths of its own. Shapes with the same mesh are drawn by one call, shapes
+//! beside the picture not at all.
 
+use crate::draws::{Draw, Draws, GLASS, OVER, SHADOW_ONLY, Shadowed, append, backdrop_looks};
 use crate::instance::{INSTANCE_BYTES, Instance};
-use crate::mesh::to_f32;
-use crate::pipelines::{GLOBALS_BYTES, Pipelines};
+use crate::pipelines::{GLOBALS_BYTES, Kind, Look, Pipelines, pattern_level};
 use crate::scene::{Item, SHAPES};
 use crate::shadow::{SunView, sun_view};
 use crate::targets::{DEPTH, Targets, texture};
+use crate::uniforms::{globals, plane};
+use crate::view_cone::ViewCone;
 use crate::{Camera, Gpu, Ground, Layer, Mesh, Quality, Scene};
 use ferrode_math::Vec3;
 use std::collections::BTreeMap;
@@ -32,6 +35,8 @@ pub struct Renderer {
     segments: Dynamic,
     meshes: BTreeMap<u64, MeshBuffers>,
     pictures: u64,
+    /// What the shadow map was drawn from.
+    shadowed: Option<Shadowed>,
     /// Columns on the right that need not be drawn.
     pub(crate) covered: u32,
 }
@@ -80,21 +85,8 @@ fn vertex_buffer(device: &wgpu::Device, size: u64) -> wgpu::Buffer {
     })
 }
 
-/// What to draw: so many corners of a mesh or of the loose triangles, for a range of instances.
-#[derive(Clone, Debug)]
-enum Draw {
-    Mesh { id: u64, instances: std::ops::Range<u32> },
-    Loose { corners: std::ops::Range<u32>, instance: u32 },
-}
-
-/// The draws of a picture by their kind.
-#[derive(Debug, Default)]
-struct Draws {
-    solid: Vec<Draw>,
-    shadow: Vec<Draw>,
-    glass: Vec<Draw>,
-    over: Vec<Draw>,
-}
+/// Round shapes of a smaller radius, in pixels, need fewer corners.
+const SMALL: f64 = 40.0;
 
 /// The radius that edges of boxes are rounded with in fine pictures.
 fn rounding(half: [f32; 3]) -> f32 {
@@ -155,6 +147,7 @@ impl Renderer {
             segments: Dynamic::new(device),
             meshes: BTreeMap::new(),
             pictures: 0,
+            shadowed: None,
             covered: 0,
         }
     }
@@ -181,11 +174,12 @@ impl Renderer {
         let sun = self.sun(scene, camera);
         let globals = globals(scene, camera, &sun, size, self.shadow_side(scene));
         self.gpu.queue.write_buffer(&self.globals, 0, bytemuck::cast_slice(&globals));
-        let draws = self.upload(scene, camera);
+        let draws = self.upload(scene, camera, size);
+        self.prepare(scene, &draws);
         if self.shadow_side(scene) > 0 {
-            self.draw_shadows(encoder, &draws);
+            self.draw_shadows(encoder, &draws, &sun);
         }
-        self.draw_world(encoder, into, scene, &draws);
+        self.draw_world(encoder, into, (scene, camera), &draws);
         self.meshes.retain(|_, mesh| mesh.seen + FORGET > self.pictures);
     }
 
@@ -211,36 +205,55 @@ impl Renderer {
         sun_view(&scene.light, balls, middle, reach, self.quality.shadow_map)
     }
 
-    fn upload(&mut self, scene: &Scene, camera: &Camera) -> Draws {
+    fn upload(&mut self, scene: &Scene, camera: &Camera, size: [u32; 2]) -> Draws {
         let eye = camera.eye - scene.origin;
+        let view = ViewCone::new(camera, scene, size);
         let is_glass = |item: &Item| item.instance[23] < 1.0;
         // By kind (solid with and without shadow, over, glass), then by mesh; glass by distance, the farthest first.
         let mut order: Vec<(u8, u64, usize)> = Vec::with_capacity(scene.items.len());
+        let mut finished: Vec<(Arc<Mesh>, Instance)> = Vec::with_capacity(scene.items.len());
         for (n, item) in scene.items.iter().enumerate() {
+            finished.push(self.finished(item, view.pixels(item.ball)));
+            let (seen, shadow) = (view.holds(item.ball), item.shadow && item.layer == Layer::World);
+            if !(seen || shadow) {
+                continue;
+            }
             let far = u64::MAX - ((item.ball.0 - eye).length() * 1e4) as u64;
+            let mesh = finished[n].0.id;
             order.push(match item.layer {
-                Layer::Over => (3, item.mesh.id, n),
-                Layer::World if is_glass(item) => (2, far, n),
-                Layer::World => (u8::from(!item.shadow), item.mesh.id, n),
+                _ if !seen => (SHADOW_ONLY, mesh, n),
+                Layer::Over => (OVER, mesh, n),
+                Layer::World if is_glass(item) => (GLASS, far, n),
+                Layer::World => (u8::from(!item.shadow), mesh, n),
             });
         }
         order.sort_unstable();
         let mut draws = Draws::default();
         let mut instances: Vec<Instance> = Vec::with_capacity(order.len() + scene.loose.len());
         for (kind, _, n) in order {
-            let item = &scene.items[n];
-            let (mesh, instance) = self.finished(item);
-            self.keep(&mesh);
+            let (mesh, instance) = &finished[n];
+            self.keep(mesh);
             let at = instances.len() as u32;
-            instances.push(instance);
-            let list = match kind {
-                0 | 1 => &mut draws.solid,
-                2 => &mut draws.glass,
-                _ => &mut draws.over,
+            instances.push(*instance);
+            let look = Look {
+                kind: match kind {
+                    _ if is_glass(&scene.items[n]) && kind != OVER => Kind::Glass,
+                    _ if mesh.closed => Kind::Closed,
+                    _ => Kind::Open,
+                },
+                patterns: pattern_level(instance[15]),
+                clouds: false,
             };
-            append(list, mesh.id, at);
-            if item.shadow && kind != 3 {
-                append(&mut draws.shadow, mesh.id, at);
+            match kind {
+                SHADOW_ONLY => {}
+                GLASS => append(&mut draws.glass, look, mesh.id, at),
+                OVER => append(&mut draws.over, look, mesh.id, at),
+                _ => append(&mut draws.solid, look, mesh.id, at),
+            }
+            if scene.items[n].shadow && kind != OVER {
+                draws.casters.push((mesh.id, *instance));
+                let outside = Look { kind: if mesh.closed { Kind::Closed } else { Kind::Open }, ..look };
+                append(&mut draws.shadow, outside, mesh.id, at);
             }
         }
         let mut corners: Vec<[f32; 9]> = Vec::new();
@@ -249,10 +262,13 @@ impl Renderer {
             instances.push(loose.instance);
             let start = corners.len() as u32;
             corners.extend(&loose.vertices);
-            let draw = Draw::Loose { corners: start..corners.len() as u32, instance };
+            let kind = if loose.instance[23] < 1.0 { Kind::Glass } else { Kind::Open };
+            let look = Look { kind, patterns: pattern_level(loose.instance[15]), clouds: false };
+            let draw = Draw::Loose { look, corners: start..corners.len() as u32, instance };
             let list = if loose.instance[23] < 1.0 { &mut draws.glass } else { &mut draws.solid };
             list.push(draw.clone());
             if loose.shadow {
+                draws.loose_casters = true;
                 draws.shadow.push(draw);
             }
         }
@@ -266,9 +282,15 @@ impl Renderer {
         draws
     }
 
-    /// The mesh and instance that are drawn for an item: fine pictures have rounded boxes.
-    fn finished(&self, item: &Item) -> (Arc<Mesh>, Instance) {
+    /// The mesh and instance that are drawn for an item of a radius in pixels: fine pictures have rounded boxes.
+    fn finished(&self, item: &Item, pixels: f64) -> (Arc<Mesh>, Instance) {
         let mut instance = item.instance;
+        if self.quality.plain
+            && pixels < SMALL
+            && let Some(coarse) = SHAPES.coarse(&item.mesh)
+        {
+            return (Arc::clone(coarse), instance);
+        }
         if !(self.quality.rounded_boxes && Arc::ptr_eq(&item.mesh, &SHAPES.cuboid)) {
             return (Arc::clone(&item.mesh), instance);
         }
@@ -300,22 +322,26 @@ impl Renderer {
         self.meshes.insert(mesh.id, buffers);
     }
 
-    fn draw_shadows(&self, encoder: &mut wgpu::CommandEncoder, draws: &Draws) {
+    fn draw_shadows(&mut self, encoder: &mut wgpu::CommandEncoder, draws: &Draws, sun: &SunView) {
+        let casters = (sun.clip, draws.casters.clone());
+        if !draws.loose_casters && self.shadowed.as_ref() == Some(&casters) {
+            return;
+        }
+        self.shadowed = Some(casters);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadows"),
             depth_stencil_attachment: Some(cleared(&self.shadow_view, 1.0)),
             ..Default::default()
         });
-        pass.set_pipeline(&self.pipelines.shadow);
         pass.set_bind_group(0, &self.globals_group, &[]);
-        self.draw_shapes(&mut pass, &draws.shadow);
+        self.draw_shapes(&mut pass, &draws.shadow, true);
     }
 
     fn draw_world(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         into: &wgpu::TextureView,
-        scene: &Scene,
+        (scene, camera): (&Scene, &Camera),
         draws: &Draws,
     ) {
         let Some(targets) = &self.targets else { return };
@@ -339,18 +365,25 @@ impl Renderer {
                 depth_stencil_attachment: Some(cleared(&targets.depth, 0.0)),
                 ..Default::default()
             });
-            self.bind(&mut pass, &self.pipelines.sky);
-            pass.draw(0..3, 0..1);
-            pass.set_pipeline(&self.pipelines.shapes);
-            self.draw_shapes(&mut pass, &draws.solid);
-            if !scene.grounds.is_empty() {
-                pass.set_pipeline(&self.pipelines.ground);
+            self.bind(&mut pass);
+            self.draw_shapes(&mut pass, &draws.solid, false);
+            let [ground, sky, _] = backdrop_looks(scene);
+            let grounds = 0..scene.grounds.len() as u32;
+            let veiled = !grounds.is_empty() && scene.grounds.iter().any(|ground| is_veil(ground, camera));
+            if !grounds.is_empty() && !veiled {
+                self.use_program(&mut pass, ground);
                 pass.set_vertex_buffer(0, self.planes.buffer.slice(..));
-                pass.draw(0..4, 0..scene.grounds.len() as u32);
+                pass.draw(0..4, grounds.clone());
+            }
+            self.use_program(&mut pass, sky);
+            pass.draw(0..3, 0..1);
+            if veiled {
+                self.use_program(&mut pass, Look { kind: Kind::Veil, ..ground });
+                pass.set_vertex_buffer(0, self.planes.buffer.slice(..));
+                pass.draw(0..4, grounds);
             }
             self.draw_lines(&mut pass, 0..lines);
-            pass.set_pipeline(&self.pipelines.glass);
-            self.draw_shapes(&mut pass, &draws.glass);
+            self.draw_shapes(&mut pass, &draws.glass, false);
         }
         if over {
             let attachments = [color(wgpu::LoadOp::Load, true)];
@@ -360,16 +393,15 @@ impl Renderer {
                 depth_stencil_attachment: Some(cleared(&targets.depth, 0.0)),
                 ..Default::default()
             });
-            self.bind(&mut pass, &self.pipelines.shapes);
-            self.draw_shapes(&mut pass, &draws.over);
+            self.bind(&mut pass);
+            self.draw_shapes(&mut pass, &draws.over, false);
             self.draw_lines(&mut pass, lines..lines + scene.lines_over.len() as u32);
         }
     }
 
-    fn bind(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline) {
+    fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_bind_group(0, &self.globals_group, &[]);
         pass.set_bind_group(1, &self.shadow_group, &[]);
-        pass.set_pipeline(pipeline);
         if let Some(Targets { size: [width, height], .. }) = self.targets {
             pass.set_scissor_rect(0, 0, width.saturating_sub(self.covered).max(1), height);
         }
@@ -377,27 +409,62 @@ impl Renderer {
 
     fn draw_lines(&self, pass: &mut wgpu::RenderPass<'_>, lines: std::ops::Range<u32>) {
         if !lines.is_empty() {
-            pass.set_pipeline(&self.pipelines.lines);
+            let look = Look { kind: Kind::Lines, patterns: 0, clouds: false };
+            self.use_program(pass, look);
             pass.set_vertex_buffer(0, self.segments.buffer.slice(..));
             pass.draw(0..4, lines);
         }
     }
 
-    fn draw_shapes(&self, pass: &mut wgpu::RenderPass<'_>, draws: &[Draw]) {
+    /// Draws shapes by the programs that their looks need, or their shadows.
+    fn draw_shapes(&self, pass: &mut wgpu::RenderPass<'_>, draws: &[Draw], shadows: bool) {
+        let mut current = None;
         for draw in draws {
+            let (Draw::Mesh { look, .. } | Draw::Loose { look, .. }) = *draw;
+            if current != Some(look) {
+                current = Some(look);
+                let programs = &self.pipelines;
+                match (shadows, look.kind) {
+                    (true, Kind::Closed) => pass.set_pipeline(&programs.shadow_closed),
+                    (true, _) => pass.set_pipeline(&programs.shadow_open),
+                    (false, _) => self.use_program(pass, look),
+                }
+            }
             match draw {
-                Draw::Mesh { id, instances } => {
+                Draw::Mesh { id, instances, .. } => {
                     let Some(mesh) = self.meshes.get(id) else { continue };
                     pass.set_vertex_buffer(0, mesh.corners.slice(..));
                     pass.set_vertex_buffer(1, self.instances.buffer.slice(..));
                     pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
                     pass.draw_indexed(0..mesh.count, 0, instances.clone());
                 }
-                Draw::Loose { corners, instance } => {
+                Draw::Loose { corners, instance, .. } => {
                     pass.set_vertex_buffer(0, self.corners.buffer.slice(..));
                     pass.set_vertex_buffer(1, self.instances.buffer.slice(..));
                     pass.draw(corners.clone(), *instance..*instance + 1);
                 }
+            }
+        }
+    }
+
+    /// Draws with a program from now on; [`Renderer::prepare`] made it.
+    fn use_program(&self, pass: &mut wgpu::RenderPass<'_>, look: Look) {
+        if let Some(program) = self.pipelines.get(look) {
+            pass.set_pipeline(program);
+        }
+    }
+
+    /// Makes the programs that a picture needs and no picture before needed.
+    fn prepare(&mut self, scene: &Scene, draws: &Draws) {
+        for draw in draws.solid.iter().chain(&draws.glass).chain(&draws.over) {
+            let (Draw::Mesh { look, .. } | Draw::Loose { look, .. }) = *draw;
+            self.pipelines.prepare(look);
+        }
+        let [ground, sky, lines] = backdrop_looks(scene);
+        for look in [ground, Look { kind: Kind::Veil, ..ground }, sky, lines] {
+            let unused = scene.grounds.is_empty() && matches!(look.kind, Kind::Ground | Kind::Veil);
+            if !unused {
+                self.pipelines.prepare(look);
             }
         }
     }
@@ -413,87 +480,7 @@ fn cleared(view: &wgpu::TextureView, depth: f32) -> wgpu::RenderPassDepthStencil
     }
 }
 
-/// Adds an instance to the last draw if that has the same mesh and ends there, else a new draw.
-fn append(list: &mut Vec<Draw>, mesh: u64, at: u32) {
-    if let Some(Draw::Mesh { id, instances }) = list.last_mut()
-        && *id == mesh
-        && instances.end == at
-    {
-        instances.end += 1;
-        return;
-    }
-    list.push(Draw::Mesh { id: mesh, instances: at..at + 1 });
-}
-
-/// The shader's `Globals`.
-fn globals(scene: &Scene, camera: &Camera, sun: &SunView, size: [u32; 2], shadow_side: u32) -> [f32; 64] {
-    let aspect = f64::from(size[0]) / f64::from(size[1]);
-    let tall = ferrode_math::real::tan(0.5 * camera.field_of_view);
-    let axes = camera.axes();
-    let four = |v: Vec3, w: f64| {
-        let [x, y, z] = to_f32(v);
-        [x, y, z, w as f32]
-    };
-    let tint = |color: crate::Color, w: f32| {
-        let [r, g, b, _] = color.linear();
-        [r, g, b, w]
-    };
-    let fade = (7.0 * camera.distance()).max(8.0);
-    let vectors: [[f32; 4]; 16] = {
-        let c = camera.clip_matrix(scene.origin, aspect);
-        let s = sun.clip;
-        [
-            c[0],
-            c[1],
-            c[2],
-            c[3],
-            s[0],
-            s[1],
-            s[2],
-            s[3],
-            four(camera.eye - scene.origin, camera.near()),
-            four(sun.direction, f64::from(scene.light.strength)),
-            tint(scene.sky.zenith, scene.light.shadow),
-            tint(scene.sky.horizon, fade as f32),
-            four(axes.right * (tall * aspect), f64::from(scene.sky.clouds.clamp(0.0, 1.0))),
-            four(axes.up * tall, 0.0),
-            four(axes.forward, 0.0),
-            [size[0] as f32, size[1] as f32, shadow_side as f32, sun.texel as f32],
-        ]
-    };
-    core::array::from_fn(|n| vectors[n / 4][n % 4])
-}
-
-/// Patterns on a ground look the same so much further, m (`PERIOD` in the shader).
-const PATTERN_PERIOD: f64 = 64.0;
-
-/// A ground as the shader wants it.
-fn plane(ground: &Ground, origin: Vec3, camera: &Camera) -> [f32; 20] {
-    let normal = ground.normal.normalized_or(Vec3::Z);
-    let aside = if normal.x.abs() < 0.9 { Vec3::X } else { Vec3::Y };
-    let first = (aside - normal * aside.dot(normal)).normalized_or(Vec3::X);
-    let second = normal.cross(first);
-    let middle = camera.target - normal * (camera.target - ground.point).dot(normal);
-    // The grid counts from the crossing nearest to the middle, of those at whole tens of steps from the given point: single
-    // precision is enough there.
-    let (grid, tens) = match ground.pattern {
-        crate::Pattern::Plain => (ground.grid, ground.grid * 10.0),
-        _ => (0.0, PATTERN_PERIOD),
-    };
-    let snap = |axis: Vec3| {
-        let along = (middle - ground.point).dot(axis);
-        if tens > 0.0 { (along / tens).round() * tens } else { along }
-    };
-    let point = ground.point + first * snap(first) + second * snap(second);
-    let reach = (60.0 * camera.distance()).max(60.0);
-    let mut out = [0.0; 20];
-    let parts = [(point - origin, grid), (first, reach), (second, 0.0)];
-    for (n, (v, w)) in parts.into_iter().enumerate() {
-        out[4 * n..4 * n + 3].copy_from_slice(&to_f32(v));
-        out[4 * n + 3] = w as f32;
-    }
-    out[12..16].copy_from_slice(&ground.color.linear());
-    out[16..19].copy_from_slice(&to_f32(middle - origin));
-    out[19] = f32::from(ground.pattern as u8);
-    out
+/// Whether what is behind a ground shines through, as seen from here: from below it is a veil that shows what stands on it.
+fn is_veil(ground: &Ground, camera: &Camera) -> bool {
+    ground.color.a < 1.0 || (camera.eye - ground.point).dot(ground.normal) < 0.0
 }

@@ -46,6 +46,21 @@ pub(crate) struct Shapes {
     pub cone: Arc<Mesh>,
     pub cuboid: Arc<Mesh>,
     pub rounded_cuboid: Arc<Mesh>,
+    pub coarse_sphere: Arc<Mesh>,
+    pub coarse_capsule: Arc<Mesh>,
+    pub coarse_cylinder: Arc<Mesh>,
+}
+
+impl Shapes {
+    /// A mesh of fewer corners that looks the same from far away.
+    pub fn coarse(&self, mesh: &Arc<Mesh>) -> Option<&Arc<Mesh>> {
+        let pairs = [
+            (&self.sphere, &self.coarse_sphere),
+            (&self.capsule, &self.coarse_capsule),
+            (&self.cylinder, &self.coarse_cylinder),
+        ];
+        pairs.into_iter().find(|(fine, _)| Arc::ptr_eq(fine, mesh)).map(|(_, coarse)| coarse)
+    }
 }
 
 pub(crate) static SHAPES: LazyLock<Shapes> = LazyLock::new(|| Shapes {
@@ -55,6 +70,9 @@ pub(crate) static SHAPES: LazyLock<Shapes> = LazyLock::new(|| Shapes {
     cone: Arc::new(crate::shapes::cone()),
     cuboid: Arc::new(crate::shapes::cuboid()),
     rounded_cuboid: Arc::new(crate::shapes::rounded_cuboid()),
+    coarse_sphere: Arc::new(Mesh::sphere(16)),
+    coarse_capsule: Arc::new(Mesh::capsule(12)),
+    coarse_cylinder: Arc::new(Mesh::cylinder(16)),
 });
 
 /// A mesh at a place.

@@ -18,6 +18,10 @@ struct Globals {
 @group(1) @binding(1) var shadow_sampler: sampler_comparison;
 
 override shadow_samples: u32 = 4u;
+// Which patterns are drawn: none (0), those without noise (1), all (2). A processor computes all branches for all pixels.
+override patterns: u32 = 2u;
+// Whether there are clouds in the sky.
+override clouded: bool = true;
 
 // ---------------------------------------------------------------- shapes
 
@@ -129,13 +133,13 @@ fn unrolled(p: vec3f, normal: vec3f) -> vec2f {
 }
 
 fn patterned(color: vec3f, pattern: f32, p: vec3f, normal: vec3f) -> vec3f {
-    if pattern < 0.5 {
+    if patterns == 0u || pattern < 0.5 {
         return color;
     }
-    if pattern > 4.5 {
+    if patterns > 1u && pattern > 4.5 {
         return mix(color * vec3f(0.55, 0.72, 0.95), color, cloudy(unrolled(p, normal) * 4.0, 0.0));
     }
-    if pattern > 3.5 {
+    if patterns > 1u && pattern > 3.5 {
         return earthen(color, unrolled(p, normal) * 2.0, 0.0);
     }
     if pattern < 1.5 {
@@ -245,6 +249,9 @@ fn sky(along: vec3f) -> vec3f {
     let height = clamp(along.z, 0.0, 1.0);
     let low = 1.0 - height;
     let clear = mix(globals.horizon.rgb, globals.zenith.rgb, 1.0 - low * low);
+    if !clouded {
+        return clear;
+    }
     if globals.right.w <= 0.0 || along.z < 0.01 {
         return clear;
     }
@@ -287,8 +294,7 @@ struct Floor {
     @location(4) @interpolate(flat) step: vec3f,   // distance of grid lines, how far it is drawn, pattern
 };
 
-@vertex
-fn ground_vertex(@builtin(vertex_index) n: u32, plane: Plane) -> Floor {
+fn floor_corner(n: u32, plane: Plane) -> Floor {
     let corner = (vec2f(f32(n & 1u), f32(n >> 1u)) * 2.0 - 1.0) * plane.first.w;
     var out: Floor;
     out.place = plane.middle.xyz + plane.first.xyz * corner.x + plane.second.xyz * corner.y;
@@ -299,6 +305,11 @@ fn ground_vertex(@builtin(vertex_index) n: u32, plane: Plane) -> Floor {
     out.normal = cross(plane.first.xyz, plane.second.xyz);
     out.step = vec3f(plane.point.w, plane.first.w, plane.middle.w);
     return out;
+}
+
+@vertex
+fn ground_vertex(@builtin(vertex_index) n: u32, plane: Plane) -> Floor {
+    return floor_corner(n, plane);
 }
 
 // How much of a pixel lines cover that are `step` apart and some pixels wide.
@@ -319,11 +330,11 @@ fn ground_fragment(s: Floor) -> @location(0) vec4f {
     let below = dot(normal, globals.eye.xyz - s.place) < 0.0;
     var color = s.color.rgb;
     let footprint = max(length(fwidth(s.grid)), 1e-6);
-    if s.step.z > 4.5 {
+    if patterns > 1u && s.step.z > 4.5 {
         color *= mix(vec3f(0.55, 0.72, 0.95), vec3f(1.0), cloudy(s.grid, footprint));
-    } else if s.step.z > 3.5 {
+    } else if patterns > 1u && s.step.z > 3.5 {
         color = earthen(color, s.grid, footprint);
-    } else if s.step.z > 0.5 {
+    } else if patterns > 0u && s.step.z > 0.5 {
         color = patterned(color, s.step.z, vec3f(s.grid, 0.0), vec3f(0.0, 0.0, 1.0));
     }
     if s.step.x > 0.0 {
@@ -343,6 +354,119 @@ fn ground_fragment(s: Floor) -> @location(0) vec4f {
     // From below, a ground is a veil that shows what stands on it.
     let alpha = select(s.color.a, 0.35, below);
     return vec4f(mix(lit, far, max(fade, edge)), alpha);
+}
+
+// ---------------------------------------------------------------- plain shapes and grounds, for processors
+
+// Light is computed at the corners; what is left for each pixel is whether the sun reaches it.
+
+// Where the shadow map is asked about a point: its texture coordinates and depth.
+fn shadow_place(place: vec3f, normal: vec3f, facing: f32) -> vec3f {
+    let slope = sqrt(max(0.0, 1.0 - facing * facing));
+    let lifted = place + normal * globals.screen.w * (1.0 + 2.5 * slope);
+    let clip = globals.sun_clip * vec4f(lifted, 1.0);
+    return vec3f(clip.xy * vec2f(0.5, -0.5) + 0.5, clip.z);
+}
+
+// As `sunlight`, by one sample, which compares with four texels.
+fn sun_at(at: vec3f) -> f32 {
+    let outside = any(at.xy < vec2f(0.0)) || any(at.xy > vec2f(1.0)) || at.z < 0.0 || globals.screen.z == 0.0;
+    let seen = textureSampleCompareLevel(shadow_map, shadow_sampler, at.xy, min(at.z, 1.0));
+    return select(mix(1.0, seen, globals.zenith.w), 1.0, outside);
+}
+
+struct Solid {
+    @builtin(position) clip: vec4f,
+    @location(0) dark: vec3f,
+    @location(1) lit: vec3f,
+    @location(2) sun: vec3f,
+    @location(3) local: vec3f,
+    @location(4) own: vec3f,
+    @location(5) @interpolate(flat) kind: vec2f,   // pattern, opacity
+};
+
+@vertex
+fn solid_vertex(s: Shape) -> Solid {
+    var out: Solid;
+    let place = placed(s);
+    let n = s.normal / max(abs(s.radii.xyz), vec3f(1e-9)) * sign(s.radii.xyz);
+    let normal = normalize(vec3f(dot(s.row0.xyz, n), dot(s.row1.xyz, n), dot(s.row2.xyz, n)));
+    let facing = dot(normal, globals.sun.xyz);
+    out.clip = globals.clip * vec4f(place, 1.0);
+    out.dark = filmic(s.color.rgb * ambient(normal) * EXPOSURE);
+    out.lit = filmic(s.color.rgb * (ambient(normal) + WARM * max(facing, 0.0) * globals.sun.w) * EXPOSURE);
+    if s.half.w > 0.5 {
+        out.dark = s.color.rgb;
+        out.lit = s.color.rgb;
+    }
+    out.sun = shadow_place(place, normal, facing);
+    out.local = s.local * s.radii.xyz + s.core * s.half.xyz;
+    out.own = n;
+    out.kind = vec2f(s.radii.w, s.color.a);
+    return out;
+}
+
+@fragment
+fn solid_fragment(s: Solid) -> @location(0) vec4f {
+    var color = mix(s.dark, s.lit, sun_at(s.sun));
+    if patterns > 0u {
+        color *= patterned(vec3f(1.0), s.kind.x, s.local, s.own);
+    }
+    return vec4f(color, s.kind.y);
+}
+
+struct PlainFloor {
+    @builtin(position) clip: vec4f,
+    @location(0) place: vec3f,                     // relative to the eye
+    @location(1) grid: vec2f,
+    @location(2) sun: vec3f,
+    @location(3) @interpolate(flat) dark: vec3f,
+    @location(4) @interpolate(flat) lit: vec3f,
+    @location(5) @interpolate(flat) step: vec3f,
+};
+
+@vertex
+fn floor_vertex(@builtin(vertex_index) n: u32, plane: Plane) -> PlainFloor {
+    let full = floor_corner(n, plane);
+    let facing = dot(full.normal, globals.sun.xyz);
+    var out: PlainFloor;
+    out.clip = full.clip;
+    out.place = full.place - globals.eye.xyz;
+    out.grid = full.grid;
+    out.sun = shadow_place(full.place, full.normal, facing);
+    out.dark = filmic(full.color.rgb * ambient(full.normal) * EXPOSURE);
+    let light = ambient(full.normal) + WARM * max(facing, 0.0) * globals.sun.w;
+    out.lit = filmic(full.color.rgb * light * EXPOSURE);
+    out.step = full.step;
+    return out;
+}
+
+@fragment
+fn floor_fragment(s: PlainFloor) -> @location(0) vec4f {
+    var color = mix(s.dark, s.lit, sun_at(s.sun));
+    if patterns > 0u {
+        let footprint = max(length(fwidth(s.grid)), 1e-6);
+        if patterns > 1u && s.step.z > 4.5 {
+            color *= mix(vec3f(0.55, 0.72, 0.95), vec3f(1.0), cloudy(s.grid, footprint));
+        } else if patterns > 1u && s.step.z > 3.5 {
+            color = earthen(color, s.grid, footprint);
+        } else {
+            color = patterned(color, s.step.z, vec3f(s.grid, 0.0), vec3f(0.0, 0.0, 1.0));
+        }
+    }
+    if s.step.x > 0.0 {
+        let fine = ruled(s.grid, s.step.x, 1.0);
+        let strong = ruled(s.grid, s.step.x * 10.0, 1.6);
+        color *= 1.0 - 0.30 * max(fine * 0.42, strong * 0.8);
+    }
+    let away = length(s.place);
+    let haze = max(away - globals.horizon.w, 0.0) / (globals.horizon.w * 4.0);
+    let edge = clamp(away / s.step.y * 3.33 - 2.33, 0.0, 1.0);
+    var far = globals.horizon.rgb;
+    if clouded {
+        far = sky(s.place / away);
+    }
+    return vec4f(mix(color, far, max(haze / (haze + 1.2), edge)), 1.0);
 }
 
 // ---------------------------------------------------------------- lines

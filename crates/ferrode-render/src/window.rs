@@ -44,16 +44,8 @@ impl WindowSurface {
         }
         config.present_mode = wgpu::PresentMode::AutoVsync;
         surface.configure(&gpu.device, &config);
-        let mut quality = Quality { shadow_map: quality.shadow_map.min(gpu.largest()), ..quality };
-        if gpu.is_software() {
-            // Four samples a pixel and rounded edges cost more than all else together there.
-            quality = Quality {
-                samples: 1,
-                shadow_map: quality.shadow_map.min(1024),
-                rounded_boxes: false,
-                ..quality
-            };
-        }
+        let quality = if gpu.is_software() { Quality::plain() } else { quality };
+        let quality = Quality { shadow_map: quality.shadow_map.min(gpu.largest()), ..quality };
         let renderer = Renderer::new(&gpu, config.format, quality);
         Ok(Self { gpu, surface, config, renderer })
     }
@@ -133,7 +125,32 @@ impl WindowSurface {
 
     /// Shows a picture.
     pub fn show(&self, frame: Frame) {
+        self.submit(frame).show(self);
+    }
+
+    /// Hands a picture's commands to the driver, but does not show it yet.
+    pub fn submit(&self, frame: Frame) -> Submitted {
         self.gpu.queue.submit([frame.encoder.finish()]);
-        self.gpu.queue.present(frame.texture);
+        Submitted(frame.texture)
+    }
+}
+
+/// A picture that the driver is drawing, or has drawn.
+#[derive(Debug)]
+pub struct Submitted(wgpu::SurfaceTexture);
+
+impl Submitted {
+    /// Waits until it is drawn; to measure how long that takes.
+    ///
+    /// # Errors
+    /// [`RenderError::Device`] if the driver fails.
+    pub fn wait(&self, surface: &WindowSurface) -> Result<(), RenderError> {
+        let done = surface.gpu.device.poll(wgpu::PollType::wait_indefinitely());
+        done.map(|_| ()).map_err(|error| RenderError::Device(error.to_string()))
+    }
+
+    /// Shows it.
+    pub fn show(self, surface: &WindowSurface) {
+        surface.gpu.queue.present(self.0);
     }
 }

@@ -23,7 +23,7 @@ pub enum Task {
 type Switch = fn(&mut Overlays);
 
 /// Names of overlays on the command line, and what they switch on.
-const OVERLAYS: [(&str, Switch); 8] = [
+const OVERLAYS: [(&str, Switch); 10] = [
     ("contacts", |o| o.contacts = true),
     ("forces", |o| o.forces = true),
     ("joints", |o| o.joints = true),
@@ -32,6 +32,8 @@ const OVERLAYS: [(&str, Switch); 8] = [
     ("inertia", |o| o.inertia = true),
     ("boxes", |o| o.boxes = true),
     ("tree", |o| o.tree = true),
+    ("names", |o| o.names = true),
+    ("time", |o| o.time = true),
 ];
 
 fn number(text: &str) -> Result<f64, String> {
@@ -64,7 +66,8 @@ fn stepper(text: &str) -> Result<Stepper, String> {
     match text {
         "direct" => Ok(Stepper::Direct),
         "quick" => Ok(Stepper::Quick),
-        _ => Err("expected direct or quick".to_owned()),
+        "substep" => Ok(Stepper::Substep),
+        _ => Err("expected direct, quick or substep".to_owned()),
     }
 }
 
@@ -101,7 +104,10 @@ fn world_args(command: Command) -> Command {
                 .action(ArgAction::Append),
         )
         .arg(option("dt", "H", "Step size in seconds [default: the file's]").value_parser(positive))
-        .arg(option("stepper", "NAME", "direct or quick, in place of the file's").value_parser(stepper))
+        .arg(
+            option("stepper", "NAME", "direct, quick or substep, in place of the file's")
+                .value_parser(stepper),
+        )
 }
 
 fn picture_args(command: Command) -> Command {
@@ -122,7 +128,7 @@ fn picture_args(command: Command) -> Command {
                 "show",
                 "WHAT",
                 "Show what bodies hide: contacts, forces, joints, joint-forces, centres,\n\
-                 inertia, boxes, tree; several with commas",
+                 inertia, boxes, tree, and as text names, time; several with commas",
             )
             .action(ArgAction::Append)
             .value_delimiter(',')
@@ -138,6 +144,14 @@ fn window_args(command: Command) -> Command {
         .arg(
             option("script", "FILE", "Do what a file says with keys and mouse (docs/viewer.md)")
                 .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            option("plot", "VALUE", "Plot a value, such as link.NAME.z or joint.NAME.force; may be repeated")
+                .action(ArgAction::Append),
+        )
+        .arg(
+            option("frames", "N", "Leave after so many frames, and print how long their parts took")
+                .value_parser(value_parser!(u32).range(1..)),
         )
         .after_help(format!("Keys:\n{}", keys.join("\n")))
 }
@@ -224,6 +238,8 @@ fn view_of(m: &ArgMatches, setup: Setup, recording: Option<PathBuf>) -> ViewArgs
         paused: m.get_flag("paused"),
         speed: m.get_one("speed").copied().unwrap_or(1.0),
         script: m.get_one::<PathBuf>("script").cloned(),
+        plots: m.get_many::<String>("plot").unwrap_or_default().cloned().collect(),
+        frames: m.get_one::<u32>("frames").copied(),
     }
 }
 

@@ -2,10 +2,11 @@
 
 use ferrode::dynamics::World;
 use ferrode::{
-    AMotor, Ball, DBall, DHinge, Hinge, Hinge2, JointKey, JointType, LMotor, LimitMotor, PR, PU, Piston,
-    Slider, Transmission, Universal,
+    AMotor, AxisFrame, Ball, DBall, DHinge, Hinge, Hinge2, JointKey, JointType, LMotor, LimitedAxis, PR, PU,
+    Piston, Slider, Transmission, Universal,
 };
-use ferrode_math::Vec3;
+use ferrode_math::{Quat, Vec3};
+use std::f64::consts::PI;
 
 /// An axis of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,19 +15,33 @@ pub struct AxisMark {
     pub at: Vec3,
     /// Unit vector along it.
     pub along: Vec3,
-    /// Its stops and where it is between them (rad or m), if it has both stops.
-    pub range: Option<Range>,
 }
 
-/// The range of an axis.
+/// The range of an axis that has stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// Lower stop, upper stop.
-    pub stops: [f64; 2],
-    /// Where it is.
-    pub position: f64,
-    /// It turns (else it slides).
-    pub turns: bool,
+pub struct RangeMark {
+    /// Of an axis that turns: a point on it. Of one that slides: the centre of the joint's first body.
+    pub at: Vec3,
+    /// The axis, its position and its stops, as the engine compares them.
+    pub limit: LimitedAxis,
+}
+
+impl RangeMark {
+    /// Where the hand is, or the first body's centre, when the axis is at `position`; hands are of length `radius`.
+    pub fn place(&self, position: f64, radius: f64) -> Vec3 {
+        let moved = position - self.limit.position;
+        if self.limit.turns {
+            self.at + Quat::from_axis_angle(self.limit.axis, moved).rotate(self.limit.hand) * radius
+        } else {
+            self.at + self.limit.axis * moved
+        }
+    }
+
+    /// The stops that can be reached: angles within ±π.
+    pub fn stops(&self) -> impl Iterator<Item = f64> + use<> {
+        let reach = if self.limit.turns { PI } else { f64::INFINITY };
+        [self.limit.low, self.limit.high].into_iter().filter(move |stop| stop.abs() < reach)
+    }
 }
 
 /// What is to be seen of a joint.
@@ -36,16 +51,28 @@ pub struct JointMarks {
     pub anchors: Vec<Vec3>,
     /// Its axes.
     pub axes: Vec<AxisMark>,
-}
-
-fn range(motor: Option<&LimitMotor>, position: f64, turns: bool) -> Option<Range> {
-    let (low, high) = motor?.limits();
-    let both = low.is_finite() && high.is_finite() && low <= high && position.is_finite();
-    both.then_some(Range { stops: [low, high], position, turns })
+    /// The ranges of those that have stops.
+    pub ranges: Vec<RangeMark>,
 }
 
 fn free(at: Vec3, along: Vec3) -> AxisMark {
-    AxisMark { at, along, range: None }
+    AxisMark { at, along }
+}
+
+fn ranges(world: &World, joint: JointKey, anchor: Vec3) -> Vec<RangeMark> {
+    let limits = world.joint_limits(joint).unwrap_or_default();
+    let at = |limit: &LimitedAxis| if limit.turns { anchor } else { first_centre(world, joint) };
+    limits
+        .into_iter()
+        .filter(LimitedAxis::has_stops)
+        .map(|limit| RangeMark { at: at(&limit), limit })
+        .collect()
+}
+
+/// The centre of a joint's first body.
+fn first_centre(world: &World, joint: JointKey) -> Vec3 {
+    let first = world.joint_bodies(joint).unwrap_or_default().into_iter().flatten().next();
+    first.and_then(|key| world.body(key).ok()).map_or(Vec3::ZERO, |body| body.position())
 }
 
 /// The middle of a joint's bodies, for joints that have no anchor.
@@ -63,23 +90,19 @@ pub fn joint_marks(world: &World, joint: JointKey) -> Option<JointMarks> {
     if world.joint_bodies(joint).ok()? == [None, None] {
         return None;
     }
-    let (anchors, axes) = match kind {
+    let (anchors, axes): (Vec<Vec3>, Vec<AxisMark>) = match kind {
         JointType::Ball => {
             let joint = world.joint::<Ball>(joint).ok()?;
             (vec![joint.anchor(), joint.anchor2()], vec![])
         }
         JointType::Hinge => {
             let hinge = world.joint::<Hinge>(joint).ok()?;
-            let range = range(hinge.limit_motor_of(0).ok(), hinge.angle(), true);
-            let axis = AxisMark { at: hinge.anchor(), along: hinge.axis(), range };
-            (vec![hinge.anchor(), hinge.anchor2()], vec![axis])
+            (vec![hinge.anchor(), hinge.anchor2()], vec![free(hinge.anchor(), hinge.axis())])
         }
         JointType::Slider => {
             let slider = world.joint::<Slider>(joint).ok()?;
-            let range = range(slider.limit_motor_of(0).ok(), slider.position().unwrap_or(f64::NAN), false);
-            let at = world.joint_bodies(joint).ok()?.into_iter().flatten().next();
-            let at = at.and_then(|key| world.body(key).ok()).map_or(Vec3::ZERO, |body| body.position());
-            (vec![at], vec![AxisMark { at, along: slider.axis(), range }])
+            let at = first_centre(world, joint);
+            (vec![at], vec![free(at, slider.axis())])
         }
         JointType::Universal => {
             let joint = world.joint::<Universal>(joint).ok()?;
@@ -103,9 +126,7 @@ pub fn joint_marks(world: &World, joint: JointKey) -> Option<JointMarks> {
         }
         JointType::Piston => {
             let joint = world.joint::<Piston>(joint).ok()?;
-            let range = range(joint.limit_motor_of(0).ok(), joint.position(), false);
-            let axis = AxisMark { at: joint.anchor(), along: joint.axis(), range };
-            (vec![joint.anchor(), joint.anchor2()], vec![axis])
+            (vec![joint.anchor(), joint.anchor2()], vec![free(joint.anchor(), joint.axis())])
         }
         JointType::DBall => {
             let joint = world.joint::<DBall>(joint).ok()?;
@@ -129,10 +150,23 @@ pub fn joint_marks(world: &World, joint: JointKey) -> Option<JointMarks> {
         JointType::LMotor => {
             let at = middle(world, joint);
             let motor = world.joint::<LMotor>(joint).ok()?;
-            (vec![], (0..motor.axis_count()).map(|axis| free(at, motor.axis(axis))).collect())
+            // They are kept in the coordinates of what they are fixed to; a single body is the first.
+            let turn = |frame: AxisFrame| {
+                let ends = world.joint_bodies(joint).unwrap_or_default();
+                let place = match frame {
+                    AxisFrame::World => return Quat::IDENTITY,
+                    AxisFrame::First => 0,
+                    AxisFrame::Second => 1,
+                };
+                let key = ends.into_iter().flatten().nth(place);
+                key.and_then(|key| world.body(key).ok()).map_or(Quat::IDENTITY, |body| body.quaternion())
+            };
+            let axis = |n: usize| turn(motor.axis_frame(n)).rotate(motor.axis(n));
+            (vec![], (0..motor.axis_count().min(3)).map(|n| free(at, axis(n))).collect())
         }
         JointType::Fixed => (vec![middle(world, joint)], vec![]),
         _ => return None,
     };
-    Some(JointMarks { anchors, axes })
+    let anchor = anchors.first().copied().unwrap_or_else(|| middle(world, joint));
+    Some(JointMarks { ranges: ranges(world, joint, anchor), anchors, axes })
 }

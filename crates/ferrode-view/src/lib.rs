@@ -2,9 +2,11 @@
 #![forbid(unsafe_code)]
 
 pub mod args;
+pub mod failure;
 pub mod film;
 pub mod islands;
 pub mod joint_marks;
+pub mod lettering;
 pub mod overlay;
 pub mod painter;
 pub mod render_command;

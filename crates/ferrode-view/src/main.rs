@@ -2,6 +2,7 @@
 //! The `ferrode-view` command: shows worlds in a window, and draws pictures and films of them.
 
 use ferrode_view::args::{self, Task};
+use ferrode_view::failure::Failure;
 use ferrode_view::{render_command, window};
 use std::process::ExitCode;
 
@@ -20,11 +21,11 @@ fn main() -> ExitCode {
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(message) => {
+        Err(Failure { exit, message }) => {
             // The loader's reports begin with "error" themselves.
             let told = message.starts_with("error");
             eprintln!("{}{message}", if told { "" } else { "error: " });
-            ExitCode::from(3)
+            ExitCode::from(exit as u8)
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What the engine knows and bodies hide: contacts, joints, masses, boxes.
 
-use crate::joint_marks::{AxisMark, joint_marks};
+use crate::joint_marks::{AxisMark, RangeMark, joint_marks};
 use ferrode::{Body, Mass, World};
 use ferrode_math::{Pose, Quat, Vec3, plane_space, real};
 use ferrode_render::{Color, Layer, Paint, Scene};
@@ -24,6 +24,10 @@ pub struct Overlays {
     pub boxes: bool,
     /// The boxes of the tree that finds pairs.
     pub tree: bool,
+    /// Names of bodies (and of joints, if these are shown), as text.
+    pub names: bool,
+    /// The time, as text; windows show it in any case.
+    pub time: bool,
 }
 
 /// How long arrows are.
@@ -164,8 +168,8 @@ pub fn draw(world: &World, overlays: &Overlays, scale: &Scale, scene: &mut Scene
             for anchor in &marks.anchors {
                 dot(scene, *anchor, 3.0 * thin, ANCHOR);
             }
-            for axis in &marks.axes {
-                draw_range(axis, scale.length, scene);
+            for range in &marks.ranges {
+                draw_range(range, scale.length, scene);
             }
         }
     }
@@ -203,29 +207,44 @@ fn draw_centre(pose: &Pose, length: f64, thin: f64, scene: &mut Scene) {
     scene.sphere_in(&Pose::from_position(pose.position), 2.0 * thin, ball, Layer::Over);
 }
 
-/// The range of an axis: for one that turns a sector between its stops and a hand where it is, for one that slides a rail.
-fn draw_range(axis: &AxisMark, length: f64, scene: &mut Scene) {
-    let Some(range) = axis.range else { return };
-    let [low, high] = range.stops;
-    if !range.turns {
-        let at = |x: f64| axis.at + axis.along * (x - range.position);
-        scene.line(at(low), at(high), 2.5, STOP, Layer::Over);
-        return;
-    }
+/// The lines of a range: for an axis that turns its stops, the arc between them and a hand where it is, for one that slides a
+/// rail with its stops, along which the first body's centre goes. The last line is the hand, or where the centre is.
+pub fn range_lines(range: &RangeMark, length: f64) -> Vec<[Vec3; 2]> {
     const PARTS: usize = 24;
-    let (first, second) = plane_space(axis.along);
-    // The hand stays, and the stops turn about it: the angle is counted between the bodies.
-    let at = |angle: f64| {
-        let a = range.position - angle;
-        axis.at + (first * real::cos(a) + second * real::sin(a)) * (0.6 * length)
-    };
-    let angle = |i: usize| low + (high - low) * i as f64 / PARTS as f64;
-    for i in 0..PARTS {
-        scene.line(at(angle(i)), at(angle(i + 1)), 2.0, STOP, Layer::Over);
+    let radius = 0.6 * length;
+    let limit = &range.limit;
+    let stops: Vec<f64> = range.stops().collect();
+    let mut lines = Vec::new();
+    if limit.turns {
+        lines.extend(stops.iter().map(|stop| [range.at, range.place(*stop, radius)]));
+        if let [low, high] = *stops {
+            let angle = |i: usize| low + (high - low) * i as f64 / PARTS as f64;
+            lines.extend(
+                (0..PARTS).map(|i| [range.place(angle(i), radius), range.place(angle(i + 1), radius)]),
+            );
+        }
+        lines.push([range.at, range.place(limit.position, radius)]);
+        return lines;
     }
-    scene.line(axis.at, at(low), 1.5, STOP, Layer::Over);
-    scene.line(axis.at, at(high), 1.5, STOP, Layer::Over);
-    scene.line(axis.at, at(range.position), 2.5, ANCHOR, Layer::Over);
+    let (across, _) = plane_space(limit.axis);
+    let mark = |position: f64, size: f64| {
+        let at = range.place(position, 0.0);
+        [at - across * size, at + across * size]
+    };
+    if let [low, high] = *stops {
+        lines.push([range.place(low, 0.0), range.place(high, 0.0)]);
+    }
+    lines.extend(stops.iter().map(|stop| mark(*stop, 0.3 * length)));
+    lines.push(mark(limit.position, 0.15 * length));
+    lines
+}
+
+fn draw_range(range: &RangeMark, length: f64, scene: &mut Scene) {
+    let lines = range_lines(range, length);
+    for (n, [from, to]) in lines.iter().enumerate() {
+        let (width, color) = if n + 1 == lines.len() { (2.5, ANCHOR) } else { (2.0, STOP) };
+        scene.line(*from, *to, width, color, Layer::Over);
+    }
 }
 
 /// The box of even density with a mass' moments: its axes' rotation in the body, and its sides; `None` for moments that no

@@ -1,6 +1,8 @@
 //! `ferrode render`: a world's picture or film, without a window.
 
+use crate::failure::Failure;
 use crate::film::{self, Format};
+use crate::lettering::{self, Lettering};
 use crate::overlay::{self, Overlays, Scale};
 use crate::painter::{Painter, bounds};
 use crate::setup::Setup;
@@ -52,6 +54,7 @@ pub struct Photographer {
     pub scale: Scale,
     /// Where the camera stands.
     pub camera: Camera,
+    lettering: Option<Lettering>,
 }
 
 impl Photographer {
@@ -69,7 +72,15 @@ impl Photographer {
         let (painter, around) = staged(named);
         let camera = view.camera(&around, canvas.aspect());
         let scale = Scale::of(&named.world);
-        Ok(Self { canvas, scene: Scene::new(), painter, overlays: Overlays::default(), scale, camera })
+        Ok(Self {
+            canvas,
+            scene: Scene::new(),
+            painter,
+            overlays: Overlays::default(),
+            scale,
+            camera,
+            lettering: None,
+        })
     }
 
     /// A picture of the world as it is now.
@@ -77,10 +88,32 @@ impl Photographer {
     /// # Errors
     /// As [`Canvas::draw`].
     pub fn picture(&mut self, world: &ferrode::World) -> Result<Picture, RenderError> {
+        self.fill(world);
+        self.canvas.draw(&self.scene, &self.camera)
+    }
+
+    /// A picture of a named world as it is now, with the text that overlays ask for.
+    ///
+    /// # Errors
+    /// As [`Canvas::draw`].
+    pub fn lettered_picture(&mut self, named: &NamedWorld) -> Result<Picture, RenderError> {
+        let size = self.canvas.size();
+        let labels = lettering::labels(named, &self.overlays, named.world.time(), &self.camera, size);
+        if labels.is_empty() {
+            return self.picture(&named.world);
+        }
+        self.fill(&named.world);
+        let letters =
+            self.lettering.get_or_insert_with(|| Lettering::new(self.canvas.gpu(), Canvas::format()));
+        self.canvas.draw_with(&self.scene, &self.camera, |gpu, encoder, view| {
+            letters.draw(gpu, encoder, view, size, |ui| lettering::paint(ui.ctx(), &labels));
+        })
+    }
+
+    fn fill(&mut self, world: &ferrode::World) {
         self.scene.clear(self.camera.target);
         self.painter.paint(world, &mut self.scene);
         overlay::draw(world, &self.overlays, &self.scale, &mut self.scene);
-        self.canvas.draw(&self.scene, &self.camera)
     }
 
     /// What draws.
@@ -107,10 +140,11 @@ pub(crate) fn staged(named: &NamedWorld) -> (Painter, Aabb) {
 ///
 /// # Errors
 /// The world is wrong, there is no driver, or the result cannot be written: one line (or the loader's report).
-pub fn render(args: &RenderArgs) -> Result<(), String> {
-    let format = Format::of(&args.out)
-        .ok_or("the name must end in .png, .gif, .mp4, or be a folder, which says what to write")?;
-    let (mut named, warnings) = args.setup.load()?;
+pub fn render(args: &RenderArgs) -> Result<(), Failure> {
+    let format = Format::of(&args.out).ok_or_else(|| {
+        Failure::usage("the name must end in .png, .gif, .mp4, or be a folder, which says what to write")
+    })?;
+    let (mut named, warnings) = args.setup.load().map_err(Failure::file)?;
     if !args.quiet {
         for warning in warnings.iter().take(5) {
             eprintln!("{warning}");
@@ -118,10 +152,10 @@ pub fn render(args: &RenderArgs) -> Result<(), String> {
     }
     let quality = if args.draft { Quality::live() } else { Quality::fine() };
     let mut photographer =
-        Photographer::new(&named, args.size, quality, &args.view).map_err(|e| e.to_string())?;
+        Photographer::new(&named, args.size, quality, &args.view).map_err(Failure::output)?;
     photographer.overlays = args.overlays;
     if args.overlays.joint_forces {
-        overlay::record_joint_forces(&mut named.world).map_err(|error| error.to_string())?;
+        overlay::record_joint_forces(&mut named.world).map_err(Failure::file)?;
     }
     let rate = args.rate.unwrap_or(if format == Format::Gif { 20.0 } else { 30.0 });
     let moments: Vec<f64> = if format.moves() {
@@ -130,19 +164,20 @@ pub fn render(args: &RenderArgs) -> Result<(), String> {
     } else {
         vec![args.start + args.time]
     };
-    let mut film = film::create(&args.out, format, args.size, rate)?;
+    let mut film = film::create(&args.out, format, args.size, rate).map_err(Failure::output)?;
     let last = moments.last().copied().unwrap_or(0.0);
     let progress = progress_bar(last, args.quiet);
     for moment in moments {
         // To the step that is nearest.
         while named.world.time() + 0.5 * named.step_size() < moment {
-            named.step().map_err(|error| error.to_string())?;
+            named.step().map_err(Failure::file)?;
             progress.set_position((named.world.time() * 1e3) as u64);
         }
-        let picture = photographer.picture(&named.world).map_err(|error| error.to_string())?;
-        film.add(&picture)?;
+        named.world.sync_geoms();
+        let picture = photographer.lettered_picture(&named).map_err(Failure::output)?;
+        film.add(&picture).map_err(Failure::output)?;
     }
-    film.finish()?;
+    film.finish().map_err(Failure::output)?;
     progress.finish_and_clear();
     Ok(())
 }

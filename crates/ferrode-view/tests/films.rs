@@ -114,10 +114,10 @@ fn what_cannot_be_done_is_said_in_a_line() {
     let other = if cfg!(target_os = "macos") { "dx12" } else { "metal" };
     let done = viewer().args(["render", &world, "-o", out]).env("WGPU_BACKEND", other).output().unwrap();
     let (code, told) = text(done);
-    assert_eq!(code, Some(3));
+    assert_eq!(code, Some(4));
     assert!(told.contains("apt install mesa-vulkan-drivers") && told.trim().lines().count() == 1, "{told}");
     let (code, told) = text(render(&[&world, "-o", "out.avi"]));
-    assert_eq!(code, Some(3));
+    assert_eq!(code, Some(2));
     assert!(told.contains(".png, .gif, .mp4"), "{told}");
 }
 
@@ -132,6 +132,82 @@ fn without_a_display_the_window_says_what_to_do_instead() {
     }
     let done = command.output().unwrap();
     let told = String::from_utf8(done.stderr).unwrap();
-    assert_eq!(done.status.code(), Some(3));
+    assert_eq!(done.status.code(), Some(4));
     assert!(told.trim().lines().count() == 1 && told.contains("ferrode render"), "{told}");
+}
+
+#[test]
+fn what_cannot_be_written_is_said_before_anything_is_simulated() {
+    if !has_driver() {
+        return;
+    }
+    let world = written("unwritable.sdf", CUBE);
+    let nowhere = scratch("no-such-folder");
+    for name in ["a.png", "a.gif", "a.mp4"] {
+        let out = nowhere.join(name);
+        // A day of simulation: it would not end.
+        let done = render(&[&world, "-o", out.to_str().unwrap(), "--time", "86400", "--draft"]);
+        let told = String::from_utf8(done.stderr).unwrap();
+        assert_eq!(done.status.code(), Some(4), "{told}");
+        assert!(told.starts_with("error: cannot write") && told.trim().lines().count() == 1, "{told}");
+    }
+}
+
+#[test]
+fn all_steppers_move_what_is_drawn() {
+    if !has_driver() {
+        return;
+    }
+    let world = written("steppers.sdf", FALLING);
+    for stepper in ["direct", "quick", "substep"] {
+        let out = scratch(&format!("stepper-{stepper}.png"));
+        let line = [
+            &[world.as_str(), "-o", out.to_str().unwrap(), "--time", "0.5", "--draft", "--stepper", stepper],
+            &VIEW[..],
+        ];
+        let done = render(&line.concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let picture = image::open(&out).unwrap().to_rgba8();
+        let seen = red_height(picture.as_raw(), 128, 96);
+        assert!((seen - expected(0.5)).abs() < 1.5, "{stepper}: {seen}");
+    }
+}
+
+#[test]
+fn names_and_the_time_are_written_where_they_belong() {
+    if !has_driver() {
+        return;
+    }
+    let world = written("lettered.sdf", FALLING);
+    let draw = |name: &str, more: &[&str]| {
+        let out = scratch(name);
+        let line = [
+            &[world.as_str(), "-o", out.to_str().unwrap(), "--draft", "--camera", "0,-6,2,0,0,2"][..],
+            &["--size", "320x240"],
+            more,
+        ];
+        let done = render(&line.concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        image::open(&out).unwrap().to_rgba8()
+    };
+    let plain = draw("letters-none.png", &[]);
+    let lettered = draw("letters-both.png", &["--show", "names,time"]);
+    let later = draw("letters-later.png", &["--show", "time", "--time", "0.004"]);
+    // Boxes of pixels that differ.
+    let differ = |a: &image::RgbaImage, b: &image::RgbaImage, within: [u32; 4]| {
+        let [x0, y0, x1, y1] = within;
+        let all = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
+        all.filter(|(x, y)| {
+            a.get_pixel(*x, *y).0.iter().zip(b.get_pixel(*x, *y).0).any(|(a, b)| a.abs_diff(b) > 40)
+        })
+        .count()
+    };
+    // The time stands in the upper left corner, the name of the ball on it.
+    let (corner, ball) = ([8, 6, 90, 32], [130, 108, 190, 132]);
+    assert!(differ(&plain, &lettered, corner) > 60);
+    assert!(differ(&plain, &lettered, ball) > 40);
+    let everywhere = differ(&plain, &lettered, [0, 0, 320, 240]);
+    assert_eq!(everywhere, differ(&plain, &lettered, corner) + differ(&plain, &lettered, ball));
+    // 0.000 s is not 0.004 s.
+    assert!(differ(&lettered, &later, corner) > 5);
 }

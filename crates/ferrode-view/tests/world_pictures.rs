@@ -3,8 +3,13 @@
 mod common;
 
 use common::canvas;
+use ferrode::dynamics::{JointData, JointMut};
 use ferrode::prelude::*;
-use ferrode::{Cone, Convex, Ellipsoid, Heightfield, Hinge, TriMesh};
+use ferrode::{
+    AMotor, AxisFrame, Cone, Convex, DHinge, Ellipsoid, Heightfield, Hinge, Hinge2, LMotor, PR, PU, Piston,
+    Slider, Transmission, TriMesh, Universal,
+};
+use ferrode_view::joint_marks::{JointMarks, joint_marks};
 use ferrode_view::overlay::{self, ArrowKind, Overlays, Scale};
 use ferrode_view::painter::{Painter, bounds};
 use ferrode_view::render::{Camera, Color, Quality, Scene};
@@ -185,4 +190,188 @@ fn drawn_arrows_lie_where_the_engine_says() {
         let [r, g, b, _] = seen(&joints, joint.anchor() + joint.axis() * along);
         assert!(g > 120 && g > r && g > b, "axes are green: {:?} at {along}", [r, g, b]);
     }
+}
+
+/// A joint of a type between two bodies, set up by hand, and what is to be seen of it.
+fn marks_of<J: JointData>(set: impl Fn(&mut JointMut<'_, J>)) -> (World, JointKey, JointMarks) {
+    let mut world = World::new();
+    let turn = |x: f64| Quat::from_axis_angle(Vec3::new(0.6, 0.0, 0.8), x);
+    let mut add = |at: Vec3, x: f64| {
+        world.add_body(BodyBuilder::new().at(at).rotated(turn(x)).with_shape(Sphere::new(0.1).unwrap(), 1e3))
+    };
+    let (a, b) = (add(Vec3::new(0.4, 0.1, 0.2), 0.3).unwrap(), add(Vec3::new(-0.5, 0.2, 0.9), 1.1).unwrap());
+    let joint = world.create_joint::<J>(None).unwrap();
+    world.attach(joint, Some(a), Some(b)).unwrap();
+    set(&mut world.joint_mut::<J>(joint).unwrap());
+    let marks = joint_marks(world.dynamics(), joint).unwrap();
+    (world, joint, marks)
+}
+
+/// Arrows lie along the axes, and through the anchor, that the joint was given.
+fn check_axes<J: JointData>(wanted: &[(Vec3, Vec3)], set: impl Fn(&mut JointMut<'_, J>)) {
+    let (world, _, marks) = marks_of::<J>(set);
+    let kind = std::any::type_name::<J>();
+    let scale = Scale { length: 0.5, per_newton: 1e-3 };
+    let overlays = Overlays { joints: true, ..Overlays::default() };
+    let arrows = overlay::arrows(&world, &overlays, &scale);
+    assert_eq!((arrows.len(), marks.axes.len()), (wanted.len(), wanted.len()), "{kind}");
+    for (arrow, (at, along)) in arrows.iter().zip(wanted) {
+        assert_eq!(arrow.kind, ArrowKind::Axis);
+        assert!((arrow.to - arrow.from - *along).length() < 1e-9, "{kind}: {arrow:?}, {along:?}");
+        let middle = (arrow.from + arrow.to) * 0.5 - *at;
+        assert!(middle.length() < 1e-9, "{kind}: {arrow:?}, {at:?}");
+    }
+}
+
+#[test]
+fn axes_of_all_joints_are_drawn_where_they_were_set() {
+    let at = Vec3::new(0.1, 0.2, 0.3);
+    let (x, y) = (Vec3::new(0.6, 0.0, 0.8), Vec3::Y);
+    let z = x.cross(y);
+    let (first, middle) = (Vec3::new(0.4, 0.1, 0.2), Vec3::new(-0.05, 0.15, 0.55));
+    check_axes::<Hinge>(&[(at, x)], |joint| {
+        joint.set_anchor(at).unwrap();
+        joint.set_axis(x).unwrap();
+    });
+    check_axes::<Slider>(&[(first, x)], |joint| joint.set_axis(x).unwrap());
+    check_axes::<Piston>(&[(at, x)], |joint| {
+        joint.set_anchor(at).unwrap();
+        joint.set_axis(x).unwrap();
+    });
+    check_axes::<Universal>(&[(at, x), (at, y)], |joint| {
+        joint.set_anchor(at).unwrap();
+        joint.set_axis1(x).unwrap();
+        joint.set_axis2(y).unwrap();
+    });
+    check_axes::<Hinge2>(&[(at, x), (at, y)], |joint| {
+        joint.set_anchor(at).unwrap();
+        joint.set_axes(Some(x), Some(y)).unwrap();
+    });
+    check_axes::<PR>(&[(at, x), (at, y)], |joint| {
+        joint.set_anchor(at).unwrap();
+        joint.set_axis1(x).unwrap();
+        joint.set_axis2(y).unwrap();
+    });
+    check_axes::<PU>(&[(at, x), (at, y), (at, z)], |joint| {
+        joint.set_anchor(at).unwrap();
+        joint.set_axis1(x).unwrap();
+        joint.set_axis2(y).unwrap();
+        joint.set_axis3(z).unwrap();
+    });
+    check_axes::<DHinge>(&[(at, x), (at + y, x)], |joint| {
+        joint.set_axis(x).unwrap();
+        joint.set_anchor1(at).unwrap();
+        joint.set_anchor2(at + y).unwrap();
+    });
+    check_axes::<Transmission>(&[(at, x), (at + z, x)], |joint| {
+        joint.set_axis(x).unwrap();
+        joint.set_anchor1(at).unwrap();
+        joint.set_anchor2(at + z).unwrap();
+    });
+    check_axes::<AMotor>(&[(middle, x), (middle, y)], |joint| {
+        joint.set_axis_count(2);
+        joint.set_axis(0, AxisFrame::World, x).unwrap();
+        joint.set_axis(1, AxisFrame::First, y).unwrap();
+    });
+    check_axes::<LMotor>(&[(middle, x), (middle, y)], |joint| {
+        joint.set_axis_count(2);
+        joint.set_axis(0, AxisFrame::World, x).unwrap();
+        joint.set_axis(1, AxisFrame::Second, y).unwrap();
+    });
+}
+
+#[test]
+fn ranges_of_all_joints_with_stops_are_drawn() {
+    fn numbers<J: JointData>(set: impl Fn(&mut JointMut<'_, J>)) -> Vec<(usize, bool, f64, f64)> {
+        let (_, _, marks) = marks_of::<J>(set);
+        marks.ranges.iter().map(|r| (r.limit.number, r.limit.turns, r.limit.low, r.limit.high)).collect()
+    }
+    let both = |turns: [bool; 3], count: usize| -> Vec<(usize, bool, f64, f64)> {
+        (0..count).map(|n| (n + 1, turns[n], -0.3, 0.4)).collect()
+    };
+    let (low, high) = (-0.3, 0.4);
+    macro_rules! stops {
+        ($joint:ident, $($axis:literal),+) => {
+            numbers::<$joint>(|joint| {
+                $(joint.set_limits_of($axis, low, high).unwrap();)+
+            })
+        };
+    }
+    assert_eq!(stops!(Hinge, 1), both([true; 3], 1));
+    assert_eq!(stops!(Slider, 1), both([false; 3], 1));
+    assert_eq!(stops!(Universal, 1, 2), both([true; 3], 2));
+    assert_eq!(stops!(Hinge2, 1), both([true; 3], 1));
+    assert_eq!(stops!(PR, 1, 2), both([false, true, true], 2));
+    assert_eq!(stops!(PU, 1, 2, 3), both([true, true, false], 3));
+    assert_eq!(stops!(Piston, 1, 2), both([false, true, true], 2));
+    let motor = numbers::<AMotor>(|joint| {
+        joint.set_axis_count(1);
+        joint.set_axis(0, AxisFrame::World, Vec3::X).unwrap();
+        joint.set_limits_of(1, low, high).unwrap();
+    });
+    assert_eq!(motor, both([true; 3], 1));
+    assert!(numbers::<Hinge>(|_| {}).is_empty(), "no stops, nothing to see");
+}
+
+#[test]
+fn a_pendulum_at_its_stop_has_its_hand_on_it() {
+    let mut world = World::new();
+    world.set_gravity(Vec3::new(0.0, 0.0, -9.81)).unwrap();
+    let ball = BodyBuilder::new().at(Vec3::new(0.5, 0.0, 0.0)).with_shape(Sphere::new(0.1).unwrap(), 1e3);
+    let ball = world.add_body(ball).unwrap();
+    for reversed in [false, true] {
+        let mut world = world.clone();
+        let joint = world.create_joint::<Hinge>(None).unwrap();
+        let ends = if reversed { [None, Some(ball)] } else { [Some(ball), None] };
+        world.attach(joint, ends[0], ends[1]).unwrap();
+        let mut hinge = world.joint_mut::<Hinge>(joint).unwrap();
+        hinge.set_anchor(Vec3::ZERO).unwrap();
+        hinge.set_axis(Vec3::Y).unwrap();
+        hinge.set_limits(-0.7, 0.7).unwrap();
+        let marks = |world: &World| joint_marks(world.dynamics(), joint).unwrap().ranges[0];
+        let start = marks(&world);
+        let stops: Vec<Vec3> = start.stops().map(|stop| start.place(stop, 1.0)).collect();
+        // It falls down to a stop and comes to rest on it; the stops, in the world, stay where they were.
+        world.stepper = Stepper::Direct;
+        for _ in 0..600 {
+            world.step(0.005).unwrap();
+            let now = marks(&world);
+            for (stop, was) in now.stops().zip(&stops) {
+                assert!((now.place(stop, 1.0) - *was).length() < 2e-3, "stops don't turn along");
+            }
+        }
+        let end = marks(&world);
+        let lines = overlay::range_lines(&end, 1.0);
+        let [from, hand] = *lines.last().unwrap();
+        assert!(from.length() < 1e-3);
+        let away = stops.iter().map(|stop| (hand / hand.length() - *stop).length()).fold(1.0, f64::min);
+        assert!(away < 0.02, "the hand lies {away} rad from the nearest stop");
+        // The ball itself hangs 0.7 rad below the horizon, and the hand turned as far.
+        let down = world.body(ball).unwrap().position();
+        assert!((ferrode::math::real::atan2(-down.z, down.x) - 0.7).abs() < 0.02, "{down:?}");
+        let began = start.place(start.limit.position, 1.0);
+        assert!((began.dot(hand / hand.length()) - ferrode::math::real::cos(0.7)).abs() < 0.02);
+    }
+}
+
+#[test]
+fn a_body_at_the_stop_of_its_slider_is_at_the_end_of_its_rail() {
+    let mut world = World::new();
+    world.set_gravity(Vec3::new(0.0, 0.0, -9.81)).unwrap();
+    let ball = world.add_body(BodyBuilder::new().with_shape(Sphere::new(0.1).unwrap(), 1e3)).unwrap();
+    let axis = Vec3::new(0.6, 0.0, 0.8);
+    let slider = world.create_joint::<Slider>(None).unwrap();
+    world.attach(slider, Some(ball), None).unwrap();
+    world.joint_mut::<Slider>(slider).unwrap().set_axis(axis).unwrap();
+    world.joint_mut::<Slider>(slider).unwrap().set_limits(-0.5, 0.2).unwrap();
+    let marks = |world: &World| joint_marks(world.dynamics(), slider).unwrap().ranges[0];
+    let rail = overlay::range_lines(&marks(&world), 1.0)[0];
+    assert!((rail[0] + axis * 0.5).length() < 1e-9 && (rail[1] - axis * 0.2).length() < 1e-9, "{rail:?}");
+    world.stepper = Stepper::Direct;
+    for _ in 0..400 {
+        world.step(0.005).unwrap();
+    }
+    assert!((world.body(ball).unwrap().position() - rail[0]).length() < 0.01);
+    let now = overlay::range_lines(&marks(&world), 1.0)[0];
+    assert!((now[0] - rail[0]).length() < 1e-3 && (now[1] - rail[1]).length() < 1e-3, "the rail stays");
 }

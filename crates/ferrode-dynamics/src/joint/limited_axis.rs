@@ -252,6 +252,6 @@ mod tests {
         assert_eq!(limits(-0.5, 0.8), (-0.5, 0.8, true));
         assert_eq!(limits(0.8, -0.5), (f64::NEG_INFINITY, f64::INFINITY, false));
         assert_eq!(limits(-0.5, f64::INFINITY), (-0.5, f64::INFINITY, true));
-        assert_eq!(limits(-7.0, 7.0).2, false);
+        assert!(!limits(-7.0, 7.0).2);
     }
 }

@@ -64,7 +64,7 @@ pub trait Film {
 /// The file cannot be made, or the encoder refuses the size.
 pub fn create(path: &Path, format: Format, size: [u32; 2], rate: f64) -> Result<Box<dyn Film>, String> {
     Ok(match format {
-        Format::Png => Box::new(png::Still { path: path.to_owned() }),
+        Format::Png => Box::new(png::Still::create(path)?),
         Format::Folder => Box::new(png::Folder::create(path)?),
         Format::Gif => Box::new(gif::Gif::create(path, size, rate)?),
         Format::Mp4 => Box::new(mp4::Mp4::create(path, size, rate)?),

@@ -23,7 +23,18 @@ pub fn save(path: &Path, picture: &Picture) -> Result<(), String> {
 
 /// One picture; of several the last.
 pub struct Still {
-    pub path: PathBuf,
+    path: PathBuf,
+}
+
+impl Still {
+    /// Tells before anything is simulated that there is no such folder.
+    pub fn create(path: &Path) -> Result<Self, String> {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder {
+            std::fs::metadata(folder).map_err(|error| cannot_write(path, error))?;
+        }
+        Ok(Self { path: path.to_owned() })
+    }
 }
 
 impl Film for Still {

@@ -35,10 +35,7 @@ impl Viewer {
             ("potential", format!("{potential:.4} J")),
             ("state", condition.to_owned()),
         ];
-        let force: Vec3 = named.world.contacts().iter().fold(Vec3::ZERO, |sum, contact| {
-            let (first, second) = (contact.first.body == Some(body), contact.second.body == Some(body));
-            sum + contact.force * (f64::from(u8::from(first)) - f64::from(u8::from(second)))
-        });
+        let force = super::quantity::contact_force(&named.world, body);
         lines.push(("contact force", format!("{} N", vector(force))));
         let mut lines: Vec<(String, String)> = lines.into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
         for (id, joint) in self.joints_of(body) {

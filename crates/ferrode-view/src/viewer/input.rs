@@ -90,6 +90,7 @@ pub const KEYS: &[(&str, &str)] = &[
     ("7", "boxes of geoms"),
     ("8", "tree of boxes"),
     ("9", "colours: bodies, sleep, islands"),
+    ("0", "names"),
     ("p", "save a picture"),
     ("tab", "panel"),
     ("esc", "leave"),

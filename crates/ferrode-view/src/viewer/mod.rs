@@ -7,6 +7,7 @@ mod orbit;
 mod panel;
 pub mod playback;
 mod plots;
+pub mod quantity;
 pub mod script;
 pub mod series;
 pub mod source;
@@ -32,8 +33,10 @@ use std::time::Duration;
 /// What the viewer asks of its window.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wish {
-    /// Save a picture of the window, or of a part of it: from and to, in points of the user interface.
-    Shot(PathBuf, Option<[[f32; 2]; 2]>),
+    /// Save a picture of the window.
+    Shot(PathBuf),
+    /// Save a picture of the plots.
+    Plots(PathBuf),
     /// Close.
     Quit,
 }
@@ -223,6 +226,7 @@ impl Viewer {
             Key::Char('6') => toggle(&mut overlays.inertia),
             Key::Char('7') => toggle(&mut overlays.boxes),
             Key::Char('8') => toggle(&mut overlays.tree),
+            Key::Char('0') => toggle(&mut overlays.names),
             Key::Char('9') => {
                 self.painter.coloring = match self.painter.coloring {
                     Coloring::Bodies => Coloring::Sleep,
@@ -234,7 +238,7 @@ impl Viewer {
                 let path = PathBuf::from(format!("ferrode-{:03}.png", self.shots));
                 self.shots += 1;
                 self.message = format!("saved {}", path.display());
-                self.wishes.push(Wish::Shot(path, None));
+                self.wishes.push(Wish::Shot(path));
             }
             Key::Tab => self.panel = !self.panel,
             Key::Escape => self.wishes.push(Wish::Quit),
@@ -245,7 +249,7 @@ impl Viewer {
     fn single_step(&mut self) {
         self.playback.paused = true;
         let grab = self.grab;
-        let stepped = self.playback.step(&mut |world, h| pull(grab, world, h));
+        let stepped = self.playback.single_step(&mut |world, h| pull(grab, world, h));
         self.tell(stepped);
         self.series.record(&self.playback);
     }
@@ -411,16 +415,34 @@ impl Viewer {
         }
     }
 
-    /// Time, pause and where all links are, as JSON.
+    /// Bodies that move: faster than 1 cm/s, or 0.05 rad/s.
+    pub fn moving(&self) -> usize {
+        let bodies = self.playback.named.world.bodies();
+        let moves = |body: &ferrode::Body| {
+            body.linear_velocity().length() > 0.01 || body.angular_velocity().length() > 0.05
+        };
+        bodies.filter(|(_, body)| body.is_enabled() && moves(body)).count()
+    }
+
+    /// Whether the picture changes by itself.
+    pub fn is_alive(&self) -> bool {
+        !self.playback.paused || !self.held.is_empty() || self.pressed.is_some()
+    }
+
+    /// Time, pause and where all links are (position, quaternion), and bodies that were added by hand, as JSON.
     pub fn state(&self) -> serde_json::Value {
         let named = &self.playback.named;
         let moving =
             named.scene.links.iter().enumerate().filter(|(n, _)| named.link_body(LinkId(*n)).is_some());
         let links = moving.map(|(n, link)| {
-            let position = named.link_pose(LinkId(n)).position.to_array();
-            (link.name.clone(), serde_json::json!(position))
+            let (p, q) = (named.link_pose(LinkId(n)).position, named.link_pose(LinkId(n)).rotation);
+            (link.name.clone(), serde_json::json!([p.x, p.y, p.z, q.w, q.x, q.y, q.z]))
         });
         let links: serde_json::Map<String, serde_json::Value> = links.collect();
+        let known: BTreeSet<BodyKey> =
+            (0..named.scene.links.len()).filter_map(|n| named.link_body(LinkId(n))).collect();
+        let added = named.world.bodies().filter(|(key, _)| !known.contains(key));
+        let added: Vec<[f64; 3]> = added.map(|(_, body)| body.position().to_array()).collect();
         let selected =
             self.selected.and_then(|body| self.link_of(body)).map(|id| &named.scene.links[id.0].name);
         serde_json::json!({
@@ -431,6 +453,7 @@ impl Viewer {
             "bodies": named.world.body_count(),
             "selected": selected,
             "links": links,
+            "added": added,
         })
     }
 }

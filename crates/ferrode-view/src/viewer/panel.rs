@@ -2,15 +2,25 @@
 
 use super::Viewer;
 use super::input::KEYS;
-use super::series::Quantity;
+use super::quantity::{JointValue, LinkValue, Quantity};
+use crate::lettering;
+use crate::overlay::Overlays;
 use crate::painter::Coloring;
 use ferrode::Stepper;
 
-const STEPPERS: [(Stepper, &str); 2] = [(Stepper::Direct, "direct"), (Stepper::Quick, "quick")];
+const STEPPERS: [(Stepper, &str); 3] =
+    [(Stepper::Direct, "direct"), (Stepper::Quick, "quick"), (Stepper::Substep, "substep")];
 
 impl Viewer {
     /// Shows the user interface.
     pub fn interface(&mut self, ui: &mut egui::Ui) {
+        if self.overlays.names {
+            let overlays = Overlays { time: false, ..self.overlays };
+            let camera = self.camera();
+            let labels =
+                lettering::labels(&self.playback.named, &overlays, self.playback.time(), &camera, self.size);
+            lettering::paint(ui.ctx(), &labels);
+        }
         if self.panel {
             let shown = egui::Panel::right("panel").resizable(true).default_size(290.0).show(ui, |ui| {
                 egui::ScrollArea::vertical().show(ui, |ui| self.sections(ui));
@@ -119,6 +129,7 @@ impl Viewer {
             ("inertia", &mut overlays.inertia),
             ("boxes", &mut overlays.boxes),
             ("tree", &mut overlays.tree),
+            ("names", &mut overlays.names),
         ];
         egui::Grid::new("overlays").num_columns(2).show(ui, |ui| {
             for (n, (name, flag)) in flags.into_iter().enumerate() {
@@ -150,25 +161,25 @@ impl Viewer {
                 ui.end_row();
             }
         });
-        let mut wanted = Vec::new();
+        let mut offers: Vec<(String, Vec<(&str, Quantity)>)> = Vec::new();
         if let Some(link) = self.link_of(body) {
-            wanted.extend((0..3).map(|axis| (["x", "y", "z"][axis], Quantity::Position(link, axis))));
-            wanted.push(("speed", Quantity::Speed(link)));
-            wanted.push(("spin", Quantity::Spin(link)));
-            wanted.push(("energy", Quantity::LinkEnergy(link)));
+            let values = LinkValue::all().map(|(value, name)| (name, Quantity::Link(link, value)));
+            offers.push(("plot".to_owned(), values.collect()));
         }
-        for (id, _) in self.joints_of(body) {
-            wanted.push(("joint position", Quantity::JointPosition(id, 0)));
-            wanted.push(("joint velocity", Quantity::JointVelocity(id, 0)));
-            wanted.push(("joint force", Quantity::JointForce(id)));
+        for (id, joint) in self.joints_of(body) {
+            let values = JointValue::all().map(|(value, name)| (name, Quantity::Joint(id, value)));
+            let there = values.filter(|(_, quantity)| quantity.value(&self.playback).is_finite());
+            offers.push((joint, there.collect()));
         }
-        ui.horizontal_wrapped(|ui| {
-            ui.weak("plot");
-            for (name, quantity) in wanted {
-                if ui.small_button(name).clicked() {
-                    self.plot(quantity);
+        for (of, values) in offers {
+            ui.horizontal_wrapped(|ui| {
+                ui.weak(of);
+                for (name, quantity) in values {
+                    if ui.small_button(name).clicked() {
+                        self.plot(quantity);
+                    }
                 }
-            }
-        });
+            });
+        }
     }
 }

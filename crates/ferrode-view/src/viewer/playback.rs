@@ -2,10 +2,11 @@
 
 use crate::setup::Setup;
 use crate::viewer::source::Recording;
-use ferrode::{BodyKey, Error, Pose, Stepper, Vec3, World};
+use ferrode::{BodyKey, Error, Pose, StepTimes, Stepper, Vec3, World};
 use ferrode_scene::NamedWorld;
 use ferrode_scene::description::LinkId;
 use std::collections::VecDeque;
+use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 /// What a step said of itself.
@@ -23,6 +24,14 @@ pub struct StepFacts {
     pub rows: usize,
     /// Pairs of boxes that overlapped.
     pub pairs: usize,
+    /// Where the time of the step went.
+    pub phases: StepTimes,
+}
+
+/// The clock that steps measure their phases by.
+fn seconds() -> f64 {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    START.elapsed().as_secs_f64()
 }
 
 /// A world in time: one that is simulated, or one whose past was recorded.
@@ -56,7 +65,8 @@ const KEEP_BODIES: usize = 300_000;
 
 impl Playback {
     /// A world to simulate.
-    pub fn new(setup: Setup, named: NamedWorld) -> Self {
+    pub fn new(setup: Setup, mut named: NamedWorld) -> Self {
+        named.world.set_step_clock(Some(seconds));
         Self {
             start: named.clone(),
             named,
@@ -131,14 +141,28 @@ impl Playback {
                 self.due = 0.0;
             }
         }
+        self.follow();
         Ok(())
+    }
+
+    /// Some steppers move bodies alone: geoms follow before they are drawn.
+    fn follow(&mut self) {
+        if self.named.world.stepper == Stepper::Substep {
+            self.named.world.sync_geoms();
+        }
     }
 
     /// Makes one step (or shows the next recorded moment).
     ///
     /// # Errors
     /// The engine refuses the step.
-    pub fn step(&mut self, before: &mut impl FnMut(&mut World, f64)) -> Result<(), Error> {
+    pub fn single_step(&mut self, before: &mut impl FnMut(&mut World, f64)) -> Result<(), Error> {
+        self.step(before)?;
+        self.follow();
+        Ok(())
+    }
+
+    fn step(&mut self, before: &mut impl FnMut(&mut World, f64)) -> Result<(), Error> {
         if let Some(recording) = &mut self.recording {
             recording.next();
             return self.show_recorded();
@@ -155,6 +179,7 @@ impl Playback {
             residual: step.dynamics.solves.iter().map(|solve| solve.residual).fold(0.0, f64::max),
             rows: step.dynamics.rows,
             pairs: step.pairs,
+            phases: self.named.world.step_times().unwrap_or_default(),
         };
         Ok(())
     }
@@ -255,6 +280,7 @@ impl Playback {
         let time = self.time();
         let stepper = self.named.world.stepper;
         let mut rebuilt = self.setup.build(&self.start.scene, Some(h))?;
+        rebuilt.world.set_step_clock(Some(seconds));
         self.start = rebuilt.clone();
         let states: Vec<State> = (0..self.named.scene.links.len()).map(|n| self.state(LinkId(n))).collect();
         for (index, state) in states.into_iter().enumerate() {

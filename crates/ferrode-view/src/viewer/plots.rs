@@ -20,10 +20,10 @@ impl Plot {
 
     /// The plots that every world has.
     pub fn usual() -> Vec<Self> {
-        use Quantity::{Contacts, Depth, Kinetic, Potential, Residual, StepTime, Total};
+        use Quantity::{Contacts, Depth, Kinetic, Phase, Potential, Residual, StepTime, Total};
         vec![
             Self::new("energies [J]", &[Kinetic, Potential, Total], true),
-            Self::new("step time [ms]", &[StepTime], false),
+            Self::new("step time [ms]", &[StepTime, Phase(0), Phase(1), Phase(2), Phase(3)], false),
             Self::new("contacts", &[Contacts], false),
             Self::new("penetration [mm]", &[Depth], false),
             Self::new("residual", &[Residual], false),
@@ -32,6 +32,16 @@ impl Plot {
 }
 
 impl Viewer {
+    /// Plots a value that a text asks for: `link.NAME.VALUE` or `joint.NAME.VALUE`.
+    ///
+    /// # Errors
+    /// There is no such value.
+    pub fn plot_named(&mut self, text: &str) -> Result<(), String> {
+        let quantity = Quantity::parse(text, &self.playback)?;
+        self.plot(quantity);
+        Ok(())
+    }
+
     /// Plots a value of a body or joint from now on.
     pub fn plot(&mut self, quantity: Quantity) {
         self.series.add(quantity);
@@ -48,11 +58,7 @@ impl Viewer {
                 ui.toggle_value(&mut plot.visible, &plot.title);
             }
         });
-        let mut area: Option<egui::Rect> = None;
-        for (number, plot) in self.shown.iter().enumerate().filter(|(_, plot)| plot.visible) {
-            let rect = chart(ui, number, plot, &self.series, &|q| q.name(&self.playback));
-            area = Some(area.map_or(rect, |sum| sum.union(rect)));
-        }
+        self.charts(ui, 120.0);
         ui.horizontal(|ui| {
             if ui.button("save CSV").clicked() {
                 let path = Path::new("ferrode-values.csv");
@@ -60,27 +66,47 @@ impl Viewer {
                 let done = self.series.save_csv(path, &self.playback);
                 self.tell(done);
             }
-            if ui.button("save PNG").clicked()
-                && let Some(area) = area
-            {
+            if ui.button("save PNG").clicked() {
                 let path = PathBuf::from("ferrode-plots.png");
                 self.message = format!("saved {}", path.display());
-                let corners = [[area.min.x, area.min.y], [area.max.x, area.max.y]];
-                self.wishes.push(Wish::Shot(path, Some(corners)));
+                self.wishes.push(Wish::Plots(path));
             }
         });
     }
 }
 
+/// Size of a plot in a picture of its own, in pixels.
+const CHART: [u32; 2] = [900, 280];
+
+impl Viewer {
+    /// The plots that are shown, of a height each.
+    fn charts(&self, ui: &mut egui::Ui, height: f32) {
+        for (number, plot) in self.shown.iter().enumerate().filter(|(_, plot)| plot.visible) {
+            chart(ui, (number, height), plot, &self.series, &|q| q.name(&self.playback));
+        }
+    }
+
+    /// Size of the picture of all plots that are shown, in pixels.
+    pub fn plots_size(&self) -> [u32; 2] {
+        let count = self.shown.iter().filter(|plot| plot.visible).count().max(1) as u32;
+        [CHART[0], CHART[1] * count + 20]
+    }
+
+    /// Fills a picture of [`Viewer::plots_size`] with all plots that are shown.
+    pub fn plots_sheet(&self, ui: &mut egui::Ui) {
+        egui::CentralPanel::default().show(ui, |ui| self.charts(ui, CHART[1] as f32 - 36.0));
+    }
+}
+
 fn chart(
     ui: &mut egui::Ui,
-    number: usize,
+    (number, height): (usize, f32),
     plot: &Plot,
     series: &Series,
     name: &dyn Fn(Quantity) -> String,
-) -> egui::Rect {
+) {
     let mut chart = Chart::new(("plot", number))
-        .height(120.0)
+        .height(height)
         .allow_scroll(false)
         .allow_zoom(false)
         .allow_drag(false)
@@ -93,12 +119,11 @@ fn chart(
     }
     let lines: Vec<(String, Vec<[f64; 2]>)> =
         plot.quantities.iter().map(|quantity| (name(*quantity), thinned(series.points(*quantity)))).collect();
-    let shown = chart.show(ui, |ui| {
+    chart.show(ui, |ui| {
         for (name, points) in lines {
             ui.line(Line::new(name, PlotPoints::from(points)));
         }
     });
-    shown.response.rect
 }
 
 /// At most about a thousand points: a line of more is no finer on a screen.

@@ -1,7 +1,7 @@
 //! Hands written down: a list of keys and moves of the mouse, for tests and films of the window.
 //!
 //! A line each: `key space` · `down w`, `up w` · `move X Y` · `press left`, `release left` · `click X Y` · `drag X Y X2 Y2 FRAMES` ·
-//! `wheel N` · `wait FRAMES` · `shot FILE.png` · `state FILE.json` · `csv FILE.csv` · `quit`. `#` begins a comment. While a script
+//! `wheel N` · `wait FRAMES` · `shot FILE.png` · `state FILE.json` · `csv FILE.csv` · `plot VALUE` · `plots FILE.png` · `quit`. `#` begins a comment. While a script
 //! runs, each frame is 1/60 s of time, however long it takes to draw.
 
 use super::input::{Button, Input, Key};
@@ -21,6 +21,10 @@ pub enum Act {
     State(PathBuf),
     /// Save the recorded values.
     Csv(PathBuf),
+    /// Plot a value.
+    Plot(String),
+    /// Save a picture of the plots.
+    Plots(PathBuf),
     /// Leave.
     Quit,
 }
@@ -120,6 +124,8 @@ fn parse_line(words: &[&str]) -> Option<Vec<Act>> {
         ["shot", file] => vec![Act::Shot(file.into())],
         ["state", file] => vec![Act::State(file.into())],
         ["csv", file] => vec![Act::Csv(file.into())],
+        ["plot", value] => vec![Act::Plot(value.to_owned())],
+        ["plots", file] => vec![Act::Plots(file.into())],
         ["quit"] => vec![Act::Quit],
         _ => return None,
     })

@@ -5,6 +5,7 @@ use crate::render::wgpu;
 use crate::viewer::Viewer;
 use crate::viewer::input::{Button, Input};
 use egui_wgpu::ScreenDescriptor;
+use std::time::{Duration, Instant};
 use winit::event::WindowEvent;
 use winit::window::Window;
 
@@ -13,12 +14,19 @@ pub struct Interface {
     ctx: egui::Context,
     state: egui_winit::State,
     renderer: egui_wgpu::Renderer,
-    /// Button and place of scripted hands.
+    /// Place of scripted hands.
     pointer: egui::Pos2,
+    painted: Option<Painted>,
+    painted_at: Instant,
+    /// Something happened since it was painted.
+    stale: bool,
 }
 
+/// Numbers that change all the time are shown anew so often only: the eye can't follow anyway.
+const EVERY: Duration = Duration::from_millis(100);
+
 /// An interface ready to be drawn.
-pub struct Painted {
+struct Painted {
     primitives: Vec<egui::ClippedPrimitive>,
     screen: ScreenDescriptor,
     free: Vec<egui::TextureId>,
@@ -34,7 +42,15 @@ impl Interface {
         let state =
             egui_winit::State::new(ctx.clone(), egui::ViewportId::ROOT, window, scale, window.theme(), most);
         let renderer = egui_wgpu::Renderer::new(&gpu.device, format, egui_wgpu::RendererOptions::default());
-        Self { ctx, state, renderer, pointer: egui::Pos2::ZERO }
+        Self {
+            ctx,
+            state,
+            renderer,
+            pointer: egui::Pos2::ZERO,
+            painted: None,
+            painted_at: Instant::now(),
+            stale: true,
+        }
     }
 
     /// Takes an event; `true` if it was for the interface alone.
@@ -80,8 +96,37 @@ impl Interface {
         self.ctx.egui_is_using_pointer()
     }
 
-    /// Lays the interface out anew.
-    pub fn run(&mut self, gpu: &Gpu, window: &Window, viewer: &mut Viewer, size: [u32; 2]) -> Painted {
+    /// Something happened that it may show.
+    pub fn expire(&mut self) {
+        self.stale = true;
+    }
+
+    /// Whether something in it moves by itself.
+    pub fn wants_repaint(&self) -> bool {
+        self.ctx.has_requested_repaint()
+    }
+
+    /// Lays the interface out anew, if something happened (or `changed`), or it shows what is long past.
+    pub fn refresh(
+        &mut self,
+        gpu: &Gpu,
+        window: &Window,
+        viewer: &mut Viewer,
+        size: [u32; 2],
+        changed: bool,
+    ) {
+        let old = self.painted.as_ref().is_none_or(|painted| painted.screen.size_in_pixels != size);
+        let late = self.painted_at.elapsed() > EVERY;
+        // Names go along with bodies.
+        if !(old || changed || self.stale || late || viewer.overlays.names || self.wants_repaint()) {
+            return;
+        }
+        (self.stale, self.painted_at) = (false, Instant::now());
+        let painted = self.run(gpu, window, viewer, size);
+        self.painted = Some(painted);
+    }
+
+    fn run(&mut self, gpu: &Gpu, window: &Window, viewer: &mut Viewer, size: [u32; 2]) -> Painted {
         let input = self.state.take_egui_input(window);
         let mut output = self.ctx.run_ui(input, |ui| viewer.interface(ui));
         self.state.handle_platform_output(window, output.platform_output);
@@ -99,13 +144,8 @@ impl Interface {
     }
 
     /// Draws it over what is in a texture.
-    pub fn draw(
-        &mut self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        into: &wgpu::TextureView,
-        painted: &Painted,
-    ) {
+    pub fn draw(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, into: &wgpu::TextureView) {
+        let Some(painted) = &self.painted else { return };
         let more = self.renderer.update_buffers(
             &gpu.device,
             &gpu.queue,
@@ -126,9 +166,9 @@ impl Interface {
     }
 
     /// Forgets textures that are not drawn any more; after the picture was handed over.
-    pub fn clean_up(&mut self, painted: &Painted) {
-        for id in &painted.free {
-            self.renderer.free_texture(id);
+    pub fn clean_up(&mut self) {
+        for id in self.painted.iter_mut().flat_map(|painted| painted.free.drain(..)) {
+            self.renderer.free_texture(&id);
         }
     }
 }

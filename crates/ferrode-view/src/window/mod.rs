@@ -3,7 +3,9 @@
 mod app;
 mod interface;
 mod keys;
+mod meter;
 
+use crate::failure::Failure;
 use crate::overlay::Overlays;
 use crate::setup::Setup;
 use crate::view_point::ViewPoint;
@@ -34,14 +36,18 @@ pub struct ViewArgs {
     pub speed: f64,
     /// Hands written down.
     pub script: Option<PathBuf>,
+    /// Values to plot from the start.
+    pub plots: Vec<String>,
+    /// Leave after so many frames, and tell how long they took.
+    pub frames: Option<u32>,
 }
 
 /// Opens the window, and comes back when it is closed.
 ///
 /// # Errors
 /// In this order: the file is wrong (the loader's report), there is no display, there is no driver.
-pub fn view(args: &ViewArgs) -> Result<(), String> {
-    let mut playback = playback(args)?;
+pub fn view(args: &ViewArgs) -> Result<(), Failure> {
+    let mut playback = playback(args).map_err(Failure::file)?;
     playback.paused = args.paused;
     playback.speed = args.speed;
     let script = args.script.as_ref().map(|path| {
@@ -49,13 +55,18 @@ pub fn view(args: &ViewArgs) -> Result<(), String> {
         let text = text.map_err(|error| format!("cannot read {}: {error}", path.display()))?;
         Script::parse(&text).map_err(|error| format!("{}: {error}", path.display()))
     });
-    let script = script.transpose()?;
-    let events = EventLoop::new().map_err(|_| no_display())?;
-    let viewer = Viewer::new(playback, args.size, &args.view, args.overlays);
+    let script = script.transpose().map_err(Failure::file)?;
+    let mut viewer = Viewer::new(playback, args.size, &args.view, args.overlays);
+    for value in &args.plots {
+        viewer.plot_named(value).map_err(Failure::usage)?;
+    }
+    let events = EventLoop::new().map_err(|_| Failure::output(no_display()))?;
     let name = args.recording.as_ref().unwrap_or(&args.setup.file);
     let title = name.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let mut app = app::App::new(viewer, script, format!("{title} – Ferrode"), events.owned_display_handle());
-    events.run_app(&mut app).map_err(|error| format!("the window failed: {error}"))?;
+    let meter = args.frames.map(|frames| meter::Meter::new(frames as usize));
+    let title = format!("{title} – Ferrode");
+    let mut app = app::App::new(viewer, script, meter, title, events.owned_display_handle());
+    events.run_app(&mut app).map_err(|error| Failure::output(format!("the window failed: {error}")))?;
     app.outcome()
 }
 
