@@ -75,17 +75,21 @@ fn around(compound: &Compound, fa: &Frame, other: &Shape, fb: &Frame) -> Aabb {
     }
 }
 
-/// The least distance of a part.
+/// Part of a compound's size by which two distances are one.
+const EQUAL: f64 = 1e-12;
+
+/// The least distance of a part; of equals that of the first, whatever rounding makes of them.
 pub(super) fn compound_distance(
     compound: &Compound,
     fa: &Frame,
     other: (&Shape, &Frame),
 ) -> Option<Distance> {
     let mut best: Option<Distance> = None;
+    let equal = EQUAL * compound.reach();
     compound.parts_in(&Aabb::EVERYTHING, |i| {
         let (part, at) = compound.part(i);
         if let Some(d) = distance_frames((part, &within(fa, at)), other)
-            && best.is_none_or(|b| d.distance < b.distance)
+            && best.is_none_or(|b| d.distance < b.distance - equal)
         {
             best = Some(d);
         }
