@@ -3,7 +3,7 @@
 use crate::real::{Real, Real4, f, vector};
 use core::ffi::{c_int, c_void};
 use ferrode_dynamics::{Contact, Surface, SurfaceMode};
-use ferrode_math::ContactPoint;
+use ferrode_math::{ContactPoint, Vec3};
 
 /// `dSurfaceParameters`.
 #[repr(C)]
@@ -52,25 +52,30 @@ pub struct ContactRecord {
 const _: () = assert!(size_of::<Real>() != 8 || size_of::<ContactRecord>() == 248);
 
 impl ContactRecord {
+    /// What the engine needs of it. Programs fill in only what the mode asks for; the rest may be whatever was in memory.
     pub fn to_engine(self) -> Contact {
         let s = self.surface;
+        let mode = SurfaceMode(s.mode.cast_unsigned());
+        let asked = |by: SurfaceMode, x: Real| if mode.has(by) { f(x) } else { 0.0 };
+        // Not asked for without rolling, whatever else is.
+        let turning = if mode.has(SurfaceMode::ROLLING) { SurfaceMode::MU2 } else { SurfaceMode::ROLLING };
         Contact {
             surface: Surface {
-                mode: SurfaceMode(s.mode.cast_unsigned()),
+                mode,
                 mu: f(s.mu),
-                mu2: f(s.mu2),
-                rho: f(s.rho),
-                rho2: f(s.rho2),
-                rho_n: f(s.rho_n),
-                bounce: f(s.bounce),
-                bounce_velocity: f(s.bounce_velocity),
-                soft_erp: f(s.soft_erp),
-                soft_cfm: f(s.soft_cfm),
-                motion1: f(s.motion1),
-                motion2: f(s.motion2),
-                motion_n: f(s.motion_n),
-                slip1: f(s.slip1),
-                slip2: f(s.slip2),
+                mu2: asked(SurfaceMode::MU2, s.mu2),
+                rho: asked(SurfaceMode::ROLLING, s.rho),
+                rho2: asked(turning, s.rho2),
+                rho_n: asked(turning, s.rho_n),
+                bounce: asked(SurfaceMode::BOUNCE, s.bounce),
+                bounce_velocity: asked(SurfaceMode::BOUNCE, s.bounce_velocity),
+                soft_erp: asked(SurfaceMode::SOFT_ERP, s.soft_erp),
+                soft_cfm: asked(SurfaceMode::SOFT_CFM, s.soft_cfm),
+                motion1: asked(SurfaceMode::MOTION1, s.motion1),
+                motion2: asked(SurfaceMode::MOTION2, s.motion2),
+                motion_n: asked(SurfaceMode::MOTION_N, s.motion_n),
+                slip1: asked(SurfaceMode::SLIP1, s.slip1),
+                slip2: asked(SurfaceMode::SLIP2, s.slip2),
                 ..Surface::default()
             },
             point: ContactPoint {
@@ -78,7 +83,7 @@ impl ContactRecord {
                 normal: vector(&self.geom.normal),
                 depth: f(self.geom.depth),
             },
-            fdir1: vector(&self.fdir1),
+            fdir1: if mode.has(SurfaceMode::FDIR1) { vector(&self.fdir1) } else { Vec3::ZERO },
         }
     }
 }

@@ -58,7 +58,9 @@ int main() {
         c.surface.mu = 1;
         c.geom.normal[2] = 1;
         c.geom.depth = 0.01;
-        dContactJoint *contact = new dContactJoint(world, group, &c);
+        /* The group destroys the joint; the wrapper must not do so again, and stays. */
+        static dContactJoint *contact;
+        contact = new dContactJoint(world, group, &c);
         contact->attach(hand, 0);
         showi("with contact", hand.getNumJoints());
         group.empty();
