@@ -14,7 +14,7 @@ pub enum Task {
     Check(FileArgs),
     /// `ferrode compare`
     Compare(CompareArgs),
-    /// `ferrode view`, `ferrode render` or `ferrode replay`, with the arguments for the viewer.
+    /// `ferrode view`, `ferrode render`, `ferrode replay` or `ferrode demo NAME`, with the arguments for the viewer.
     Viewer(&'static str, Vec<std::ffi::OsString>),
     /// `ferrode demo`
     Demo(DemoArgs),
@@ -101,15 +101,13 @@ pub struct CompareArgs {
     pub quiet: bool,
 }
 
-/// `ferrode demo`
+/// `ferrode demo` without pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DemoArgs {
-    /// The demo's name; none to list them.
+    /// The one to run; none to list them.
     pub name: Option<String>,
     /// All of them.
     pub all: bool,
-    /// Without pictures: run it and check its property.
-    pub headless: bool,
 }
 
 /// The steppers by the names they have here.
@@ -125,6 +123,14 @@ const DEFAULT_SECONDS: f64 = 5.0;
 
 /// Gains of `--hold` without a value: a robot of some tens of kilograms stands up straight with them.
 const DEFAULT_GAINS: &str = "1000,30";
+
+const DEMO_EXAMPLES: &str = "\
+Examples:
+  ferrode demo                                    what there is, one demo a line
+  ferrode demo walker                             in a window
+  ferrode demo walker -o walker.png --time 4      a picture (or walker.mp4)
+  ferrode demo walker --headless                  without pictures: does it do what it should?
+  ferrode demo --all --headless                   do all of them?";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -326,21 +332,30 @@ pub fn command() -> Command {
         .about("Run a world with each stepper, and set their times and errors side by side")
         .after_help(EXIT_CODES);
     let demo = Command::new("demo")
-        .about("Run a scene of the gallery and check the physical property that it shows, or list them")
-        .after_help(EXIT_CODES)
-        .arg(Arg::new("name").value_name("NAME").help("The demo; without a name they are listed"))
+        .about("Show a scene of the gallery, or list them, or check the physical property that each shows")
+        .after_help(format!("{DEMO_EXAMPLES}\n\n{EXIT_CODES}"))
+        .arg(Arg::new("name").value_name("NAME").help("The demo to show; without a name they are listed"))
+        .arg(
+            Arg::new("arguments")
+                .value_name("OPTIONS")
+                .num_args(0..)
+                .trailing_var_arg(true)
+                .allow_hyphen_values(true)
+                .value_parser(value_parser!(std::ffi::OsString))
+                .help("For the viewer: see `ferrode-view demo --help`"),
+        )
         .arg(
             Arg::new("all")
                 .long("all")
                 .action(ArgAction::SetTrue)
                 .conflicts_with("name")
-                .help("All demos, one after the other"),
+                .help("Run all demos without pictures, and check each one's property"),
         )
         .arg(
             Arg::new("headless")
                 .long("headless")
                 .action(ArgAction::SetTrue)
-                .help("Without pictures (there are none yet)"),
+                .help("Run the demo without pictures, and check its property"),
         );
     Command::new("ferrode")
         .about("Rigid-body dynamics from the command line: runs SDF worlds and URDF robots.")
@@ -380,11 +395,7 @@ where
             let arguments = m.get_many::<std::ffi::OsString>("arguments").unwrap_or_default();
             Task::Viewer(known, arguments.cloned().collect())
         }
-        Some(("demo", m)) => Task::Demo(DemoArgs {
-            name: m.get_one::<String>("name").cloned(),
-            all: m.get_flag("all"),
-            headless: m.get_flag("headless"),
-        }),
+        Some(("demo", m)) => demo_of(m)?,
         Some(("run", m)) => {
             let stepper = m.get_one::<String>("stepper");
             Task::Run(RunArgs {
@@ -402,6 +413,26 @@ where
         }
         _ => return Err(command().error(clap::error::ErrorKind::MissingSubcommand, "nothing to do")),
     })
+}
+
+/// A demo by name is shown, unless it is to run headless; what the viewer is told may come before that word.
+fn demo_of(m: &ArgMatches) -> Result<Task, clap::Error> {
+    let name = m.get_one::<String>("name").cloned();
+    let given = m.get_many::<std::ffi::OsString>("arguments").unwrap_or_default();
+    let (own, arguments): (Vec<_>, Vec<_>) =
+        given.cloned().partition(|argument| argument == "--headless" || argument == "--all");
+    let wrong = |what: &str| command().error(clap::error::ErrorKind::ArgumentConflict, what);
+    if own.iter().any(|argument| argument == "--all") {
+        return Err(wrong("--all is for all demos: leave out the name"));
+    }
+    let headless = m.get_flag("headless") || !own.is_empty();
+    match name {
+        Some(name) if !headless => {
+            Ok(Task::Viewer("demo", std::iter::once(name.into()).chain(arguments).collect()))
+        }
+        _ if !arguments.is_empty() => Err(wrong("a demo that runs without pictures has no further options")),
+        name => Ok(Task::Demo(DemoArgs { name, all: m.get_flag("all") })),
+    }
 }
 
 fn file_of(m: &ArgMatches) -> FileArgs {
@@ -431,7 +462,7 @@ fn length_of(m: &ArgMatches) -> Length {
 
 #[cfg(test)]
 mod tests {
-    use super::{Length, Task, command, parse};
+    use super::{DemoArgs, Length, Task, command, parse};
     use ferrode::Stepper;
 
     #[test]
@@ -465,6 +496,26 @@ mod tests {
     }
 
     #[test]
+    fn a_demo_is_shown_unless_it_is_headless() {
+        let task = |line: &str| parse(line.split_whitespace());
+        let Ok(Task::Viewer("demo", arguments)) = task("ferrode demo hinge -o out.png --camera -30,20")
+        else {
+            panic!("another task")
+        };
+        let text: Vec<&str> = arguments.iter().filter_map(|argument| argument.to_str()).collect();
+        assert_eq!(text.join(" "), "hinge -o out.png --camera -30,20");
+        let headless = |name: Option<&str>, all| Task::Demo(DemoArgs { name: name.map(str::to_owned), all });
+        for (line, want) in [
+            ("ferrode demo", headless(None, false)),
+            ("ferrode demo hinge --headless", headless(Some("hinge"), false)),
+            ("ferrode demo --headless hinge", headless(Some("hinge"), false)),
+            ("ferrode demo --all --headless", headless(None, true)),
+        ] {
+            assert_eq!(task(line).unwrap(), want, "{line}");
+        }
+    }
+
+    #[test]
     fn nonsense_is_refused() {
         for line in [
             "ferrode run",
@@ -482,6 +533,8 @@ mod tests {
             "ferrode run a.sdf --stepper slow",
             "ferrode fly a.sdf",
             "ferrode demo hinge --all",
+            "ferrode demo hinge --headless -o out.png",
+            "ferrode demo hinge -o out.png --headless",
         ] {
             assert!(parse(line.split_whitespace()).is_err(), "{line}");
         }

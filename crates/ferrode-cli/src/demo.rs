@@ -3,11 +3,11 @@
 use crate::args::DemoArgs;
 use crate::exit::{Exit, Failure};
 use crate::run::print;
-use ferrode_demos::{ALL, Demo};
+use ferrode_demos::{ALL, Demo, list};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// Does what `ferrode demo` is asked for.
+/// Does what `ferrode demo` is asked for, without pictures.
 ///
 /// # Errors
 /// A name that no demo has, or one whose property does not hold.
@@ -20,21 +20,12 @@ pub fn demo(args: &DemoArgs) -> Result<Exit, Failure> {
             return Ok(Exit::Success);
         }
     };
-    if !args.headless {
-        eprintln!("note: the viewer does not show demos yet; without pictures, as with --headless:");
-    }
     run(&chosen)
 }
 
 fn find(name: &str) -> Result<&'static Demo, Failure> {
     ferrode_demos::find(name)
         .ok_or_else(|| Failure::usage(format!("no demo is called {name}; `ferrode demo` lists them")))
-}
-
-/// One demo a line.
-fn list() -> String {
-    let width = ALL.iter().map(|demo| demo.name.len()).max().unwrap_or(0);
-    ALL.iter().map(|demo| format!("{:width$}  {}\n", demo.name, demo.about)).collect()
 }
 
 /// Runs demos without pictures, as many at once as there are processors, and prints what was measured on each as it ends.

@@ -13,11 +13,19 @@ const NAME: &str = "ferrode-view";
 /// # Errors
 /// [`Exit::Usage`] if it is not installed; the viewer's own exit code if it fails, which has told why.
 pub fn start<'a>(arguments: impl IntoIterator<Item = &'a OsStr>) -> Result<(), Failure> {
-    let status = match Command::new(program()).args(arguments).status() {
+    let arguments: Vec<&OsStr> = arguments.into_iter().collect();
+    let status = match Command::new(program()).args(&arguments).status() {
         Ok(status) => status,
         Err(error) if error.kind() == ErrorKind::NotFound => {
+            let without = match arguments[..] {
+                [command, name, ..] if command == "demo" => {
+                    format!("; without pictures: `ferrode demo {} --headless`", name.to_string_lossy())
+                }
+                _ => String::new(),
+            };
             return Err(Failure::usage(format!(
-                "{NAME} is not installed, and pictures need it: `cargo install {NAME}`, or `cargo build --release -p {NAME}` here"
+                "{NAME} is not installed, and pictures need it: `cargo install {NAME}`, or `cargo build --release -p {NAME}` \
+                 here{without}"
             )));
         }
         Err(error) => return Err(Failure::usage(format!("{NAME} cannot be started: {error}"))),

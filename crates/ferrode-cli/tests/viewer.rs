@@ -23,11 +23,12 @@ fn alone(test: &str) -> PathBuf {
 fn without_the_viewer_one_line_says_how_to_install_it() {
     let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let ferrode = alone("no-viewer");
-    for name in ["view", "render", "replay"] {
-        let done = Command::new(&ferrode).args([name, "a.sdf"]).env("PATH", "").output().unwrap();
+    for (name, what) in [("view", "a.sdf"), ("render", "a.sdf"), ("replay", "a.jsonl"), ("demo", "hinge")] {
+        let done = Command::new(&ferrode).args([name, what]).env("PATH", "").output().unwrap();
         let told = String::from_utf8(done.stderr).unwrap();
         assert_eq!(done.status.code(), Some(2), "{told}");
         assert!(told.trim().lines().count() == 1 && told.contains("cargo install ferrode-view"), "{told}");
+        assert_eq!(told.contains("ferrode demo hinge --headless"), name == "demo", "{told}");
     }
 }
 

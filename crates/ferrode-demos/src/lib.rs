@@ -13,13 +13,15 @@
 #![forbid(unsafe_code)]
 
 mod demo;
+mod drawing;
 mod gallery;
 mod kit;
 mod play;
 mod solids;
 mod verdict;
 
-pub use demo::{Camera, Demo, find};
+pub use demo::{Camera, Demo, Subject, find, list};
+pub use drawing::{Drawing, Mark, Tint};
 pub use gallery::ALL;
-pub use play::Play;
+pub use play::{Director, Play};
 pub use verdict::Failure;

@@ -762,3 +762,35 @@ fn the_quick_stepper_finds_the_same_springs_dampers_and_friction() {
         );
     }
 }
+
+#[test]
+fn a_world_of_a_program_gets_names_and_steps_to_the_same_bits() -> Result<(), ferrode::Error> {
+    use ferrode::{BodyBuilder, Cuboid, Sphere, World};
+    let mut world = World::new();
+    world.set_gravity(Vec3::new(0.0, 0.0, -9.81))?;
+    let root = world.add_body(BodyBuilder::new().with_shape(Cuboid::new(Vec3::splat(0.4))?, 500.0))?;
+    let arm = BodyBuilder::new().at(Vec3::new(1.0, 0.0, 0.0)).with_shape(Sphere::new(0.2)?, 500.0);
+    let arm = world.add_body(arm)?;
+    let bare = world.create_body();
+    world.add_fixed(Some(root), None)?;
+    let hinge = world.add_hinge(Some(arm), Some(root), Vec3::ZERO, Vec3::Y)?;
+    let mut alone = world.clone();
+    let mut named = NamedWorld::of_world(world, 0.01, "test");
+    assert_eq!(named.step_size(), 0.01);
+    for (name, key) in [("Cuboid 1", root), ("Sphere 2", arm), ("Body 3", bare)] {
+        assert_eq!(named.link(name).unwrap().body(), Some(key), "{name}");
+    }
+    let joint = named.joint("Revolute 2").unwrap();
+    assert_eq!((joint.key(), joint.description().child), (Some(hinge), Body::Link(LinkId(1))));
+    for _ in 0..50 {
+        named.step()?;
+        alone.step(0.01)?;
+    }
+    assert_eq!(named.world.body(arm)?.pose(), alone.body(arm)?.pose());
+    let joint = named.joint("Revolute 2").unwrap();
+    let angle = alone.joint::<ferrode::Hinge>(hinge)?.angle();
+    assert!((joint.position(0).unwrap() - angle).abs() < 1e-12 && angle > 0.3, "{angle}");
+    assert_eq!(joint.unit(0), Some("rad"));
+    assert_eq!(named.link("Sphere 2").unwrap().pose().position, alone.body(arm)?.position());
+    Ok(())
+}

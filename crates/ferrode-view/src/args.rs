@@ -1,5 +1,6 @@
 //! The command line: what can be asked for.
 
+use crate::demo;
 use crate::overlay::Overlays;
 use crate::render_command::RenderArgs;
 use crate::setup::Setup;
@@ -8,6 +9,7 @@ use crate::viewer::input::KEYS;
 use crate::window::ViewArgs;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use ferrode::Stepper;
+use ferrode_demos::Demo;
 use std::path::PathBuf;
 
 /// What to do.
@@ -17,6 +19,10 @@ pub enum Task {
     Render(Box<RenderArgs>),
     /// `ferrode-view view` and `ferrode-view replay`
     View(Box<ViewArgs>),
+    /// `ferrode-view demo` without a name
+    List,
+    /// `ferrode-view gallery`
+    Gallery(PathBuf),
 }
 
 /// Switches an overlay on.
@@ -60,6 +66,17 @@ fn overlay(text: &str) -> Result<usize, String> {
         let names: Vec<&str> = OVERLAYS.iter().map(|(name, _)| *name).collect();
         format!("expected one of {}", names.join(", "))
     })
+}
+
+fn known_demo(text: &str) -> Result<&'static Demo, String> {
+    ferrode_demos::find(text).ok_or_else(|| "no demo is called that; `ferrode demo` lists them".to_owned())
+}
+
+/// Switches on the overlay of a name, if there is one.
+pub(crate) fn switch_on(overlays: &mut Overlays, name: &str) {
+    if let Ok(index) = overlay(name) {
+        OVERLAYS[index].1(overlays);
+    }
 }
 
 fn stepper(text: &str) -> Result<Stepper, String> {
@@ -156,6 +173,30 @@ fn window_args(command: Command) -> Command {
         .after_help(format!("Keys:\n{}", keys.join("\n")))
 }
 
+fn film_args(command: Command) -> Command {
+    command
+        .arg(
+            Arg::new("out")
+                .short('o')
+                .long("out")
+                .value_name("OUT")
+                .value_parser(value_parser!(PathBuf))
+                .help("out.png, out.gif, out.mp4, or a folder for numbered pictures"),
+        )
+        .arg(
+            option(
+                "time",
+                "S",
+                "The picture's moment, or the film's length [default: 0 and 5,\nor a demo's own]",
+            )
+            .value_parser(not_negative),
+        )
+        .arg(option("start", "S", "Where the film begins [default: 0]").value_parser(not_negative))
+        .arg(option("fps", "N", "Frames a second [default: 30, GIF 20]").value_parser(positive))
+        .arg(flag("draft", "Draw as windows do: quicker, with harder shadows"))
+        .arg(flag("quiet", "No progress bar, no warnings").short('q'))
+}
+
 /// The grammar.
 pub fn command() -> Command {
     let view = window_args(world_args(
@@ -175,29 +216,30 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("The world that was recorded; without it, each link is a small box"),
         );
-    let render =
-        picture_args(world_args(Command::new("render").about("Draws a picture or a film, without a window")))
-            .arg(
-                Arg::new("out")
-                    .short('o')
-                    .long("out")
-                    .value_name("OUT")
-                    .required(true)
-                    .value_parser(value_parser!(PathBuf))
-                    .help("out.png, out.gif, out.mp4, or a folder for numbered pictures"),
-            )
-            .arg(
-                option("time", "S", "The picture's moment, or the film's length [default: 0 and 5]")
-                    .value_parser(not_negative),
-            )
-            .arg(option("start", "S", "Where the film begins [default: 0]").value_parser(not_negative))
-            .arg(option("fps", "N", "Frames a second [default: 30, GIF 20]").value_parser(positive))
-            .arg(
-                option("speed", "X", "Slower (0.2) or faster (3) than time [default: 1]")
-                    .value_parser(positive),
-            )
-            .arg(flag("draft", "Draw as windows do: quicker, with harder shadows"))
-            .arg(flag("quiet", "No progress bar, no warnings").short('q'));
+    let render = film_args(picture_args(world_args(
+        Command::new("render").about("Draws a picture or a film, without a window"),
+    )))
+    .arg(option("speed", "X", "Slower (0.2) or faster (3) than time [default: 1]").value_parser(positive))
+    .mut_arg("out", |out| out.required(true));
+    let demo = film_args(window_args(
+        Command::new("demo")
+            .about("Shows a demo of the gallery in a window, or draws it; without a name, lists them"),
+    ))
+    .arg(
+        Arg::new("name")
+            .value_name("NAME")
+            .value_parser(known_demo)
+            .help("The demo; its own camera and moment are the defaults"),
+    );
+    let gallery = Command::new("gallery")
+        .about("Draws all pictures of the documentation: of each demo, and of each joint for the book")
+        .arg(
+            Arg::new("docs")
+                .value_name("DOCS")
+                .required(true)
+                .value_parser(value_parser!(PathBuf))
+                .help("The folder that holds gallery.md, img/ and book/img/"),
+        );
     Command::new("ferrode-view")
         .about("Shows SDF worlds and URDF robots as they are simulated")
         .version(env!("CARGO_PKG_VERSION"))
@@ -206,6 +248,8 @@ pub fn command() -> Command {
         .subcommand(view)
         .subcommand(render)
         .subcommand(replay)
+        .subcommand(demo)
+        .subcommand(gallery)
 }
 
 fn setup_of(m: &ArgMatches) -> Setup {
@@ -231,6 +275,7 @@ fn overlays_of(m: &ArgMatches) -> Overlays {
 fn view_of(m: &ArgMatches, setup: Setup, recording: Option<PathBuf>) -> ViewArgs {
     ViewArgs {
         setup,
+        demo: None,
         recording,
         view: m.get_one("camera").copied().unwrap_or_default(),
         size: m.get_one("size").copied().unwrap_or(SIZE),
@@ -241,6 +286,43 @@ fn view_of(m: &ArgMatches, setup: Setup, recording: Option<PathBuf>) -> ViewArgs
         plots: m.get_many::<String>("plot").unwrap_or_default().cloned().collect(),
         frames: m.get_one::<u32>("frames").copied(),
     }
+}
+
+fn render_of(m: &ArgMatches, setup: Setup, out: PathBuf) -> RenderArgs {
+    let moves = crate::film::Format::of(&out).is_some_and(crate::film::Format::moves);
+    RenderArgs {
+        setup,
+        demo: None,
+        time: m.get_one("time").copied().unwrap_or(if moves { 5.0 } else { 0.0 }),
+        start: m.get_one("start").copied().unwrap_or(0.0),
+        rate: m.get_one("fps").copied(),
+        speed: m.get_one("speed").copied().unwrap_or(1.0),
+        view: m.get_one("camera").copied().unwrap_or_default(),
+        size: m.get_one("size").copied().unwrap_or(SIZE),
+        overlays: overlays_of(m),
+        draft: m.get_flag("draft"),
+        quiet: m.get_flag("quiet"),
+        out,
+    }
+}
+
+fn demo_of(m: &ArgMatches) -> Task {
+    let Some(&demo) = m.get_one::<&'static Demo>("name") else { return Task::List };
+    let view = m.get_one("camera").copied().unwrap_or_else(|| demo::view_point(demo));
+    let mut overlays = demo::overlays(demo);
+    for index in m.get_many::<usize>("show").unwrap_or_default() {
+        OVERLAYS[*index].1(&mut overlays);
+    }
+    let demo_itself = Some(demo);
+    let Some(out) = m.get_one::<PathBuf>("out").cloned() else {
+        let args = view_of(m, Setup::default(), None);
+        return Task::View(Box::new(ViewArgs { demo: demo_itself, view, overlays, ..args }));
+    };
+    let args = render_of(m, Setup::default(), out);
+    let moves = crate::film::Format::of(&args.out).is_some_and(crate::film::Format::moves);
+    let usual = if moves { demo.seconds } else { demo.picture_at };
+    let time = m.get_one("time").copied().unwrap_or(usual);
+    Task::Render(Box::new(RenderArgs { demo: demo_itself, view, overlays, time, ..args }))
 }
 
 const SIZE: [u32; 2] = [1280, 720];
@@ -256,21 +338,10 @@ pub fn parse(
     match matches.subcommand() {
         Some(("render", m)) => {
             let out = m.get_one::<PathBuf>("out").cloned().unwrap_or_default();
-            let moves = crate::film::Format::of(&out).is_some_and(crate::film::Format::moves);
-            Ok(Task::Render(Box::new(RenderArgs {
-                setup: setup_of(m),
-                time: m.get_one("time").copied().unwrap_or(if moves { 5.0 } else { 0.0 }),
-                start: m.get_one("start").copied().unwrap_or(0.0),
-                rate: m.get_one("fps").copied(),
-                speed: m.get_one("speed").copied().unwrap_or(1.0),
-                view: m.get_one("camera").copied().unwrap_or_default(),
-                size: m.get_one("size").copied().unwrap_or(SIZE),
-                overlays: overlays_of(m),
-                draft: m.get_flag("draft"),
-                quiet: m.get_flag("quiet"),
-                out,
-            })))
+            Ok(Task::Render(Box::new(render_of(m, setup_of(m), out))))
         }
+        Some(("demo", m)) => Ok(demo_of(m)),
+        Some(("gallery", m)) => Ok(Task::Gallery(m.get_one::<PathBuf>("docs").cloned().unwrap_or_default())),
         Some(("view", m)) => Ok(Task::View(Box::new(view_of(m, setup_of(m), None)))),
         Some(("replay", m)) => {
             let file = m.get_one::<PathBuf>("world").cloned().unwrap_or_default();

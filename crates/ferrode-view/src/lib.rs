@@ -2,8 +2,10 @@
 #![forbid(unsafe_code)]
 
 pub mod args;
+pub mod demo;
 pub mod failure;
 pub mod film;
+pub mod gallery;
 pub mod islands;
 pub mod joint_marks;
 pub mod lettering;

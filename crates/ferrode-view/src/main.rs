@@ -3,7 +3,8 @@
 
 use ferrode_view::args::{self, Task};
 use ferrode_view::failure::Failure;
-use ferrode_view::{render_command, window};
+use ferrode_view::{gallery, render_command, window};
+use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -18,6 +19,9 @@ fn main() -> ExitCode {
     let result = match task {
         Task::Render(args) => render_command::render(&args),
         Task::View(args) => window::view(&args),
+        Task::Gallery(docs) => gallery::draw_all(&docs),
+        // A reader that has seen enough closes the pipe.
+        Task::List => Ok(std::io::stdout().write_all(ferrode_demos::list().as_bytes()).unwrap_or_default()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

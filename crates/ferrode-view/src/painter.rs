@@ -105,7 +105,7 @@ impl Painter {
             let Ok(geom) = world.geom(info.key) else { continue };
             let color = self.color(world, info.body);
             grounded |= matches!(geom.shape(), Shape::Plane(_) | Shape::Heightfield(_));
-            self.shape(info.key, geom.shape(), geom.pose(), Paint::from(color), scene);
+            self.shape(Some(info.key), geom.shape(), geom.pose(), Paint::from(color), scene);
         }
         if let (Some(height), false) = (self.floor, grounded) {
             // It must not hide what comes down to it.
@@ -115,7 +115,15 @@ impl Painter {
         }
     }
 
-    fn shape(&mut self, key: GeomKey, shape: &Shape, pose: &Pose, paint: Paint, scene: &mut Scene) {
+    /// Adds a shape. Meshes are remembered for the geom that they are of.
+    pub(crate) fn shape(
+        &mut self,
+        key: Option<GeomKey>,
+        shape: &Shape,
+        pose: &Pose,
+        paint: Paint,
+        scene: &mut Scene,
+    ) {
         match shape {
             Shape::Sphere(s) => scene.sphere(pose, s.radius(), paint.with_pattern(Pattern::Octants)),
             Shape::Cuboid(s) => scene.cuboid(pose, s.sides(), paint),
@@ -140,13 +148,15 @@ impl Painter {
         }
     }
 
-    fn mesh(&mut self, key: GeomKey, shape: &Shape) -> Option<Arc<Mesh>> {
-        if let Some(mesh) = self.meshes.get(&key) {
+    fn mesh(&mut self, key: Option<GeomKey>, shape: &Shape) -> Option<Arc<Mesh>> {
+        if let Some(mesh) = key.and_then(|key| self.meshes.get(&key)) {
             return Some(Arc::clone(mesh));
         }
         let (corners, triangles) = triangles(shape)?;
         let mesh = Arc::new(Mesh::new(&corners, &triangles));
-        self.meshes.insert(key, Arc::clone(&mesh));
+        if let Some(key) = key {
+            self.meshes.insert(key, Arc::clone(&mesh));
+        }
         Some(mesh)
     }
 }

@@ -1,5 +1,6 @@
 //! `ferrode render`: a world's picture or film, without a window.
 
+use crate::demo::{self, Direction};
 use crate::failure::Failure;
 use crate::film::{self, Format};
 use crate::lettering::{self, Lettering};
@@ -7,6 +8,7 @@ use crate::overlay::{self, Overlays, Scale};
 use crate::painter::{Painter, bounds};
 use crate::setup::Setup;
 use crate::view_point::ViewPoint;
+use ferrode_demos::Demo;
 use ferrode_math::{Aabb, Vec3};
 use ferrode_render::{Camera, Canvas, Picture, Quality, RenderError, Scene};
 use ferrode_scene::NamedWorld;
@@ -19,6 +21,8 @@ use std::path::PathBuf;
 pub struct RenderArgs {
     /// The world.
     pub setup: Setup,
+    /// A demo in place of the file's world.
+    pub demo: Option<&'static Demo>,
     /// Where the picture or film goes.
     pub out: PathBuf,
     /// The picture's moment, or the film's length, s.
@@ -88,21 +92,25 @@ impl Photographer {
     /// # Errors
     /// As [`Canvas::draw`].
     pub fn picture(&mut self, world: &ferrode::World) -> Result<Picture, RenderError> {
-        self.fill(world);
+        self.fill(world, None);
         self.canvas.draw(&self.scene, &self.camera)
     }
 
-    /// A picture of a named world as it is now, with the text that overlays ask for.
+    /// A picture of a named world as it is now, with the text that overlays ask for, and what a demo draws beside it.
     ///
     /// # Errors
     /// As [`Canvas::draw`].
-    pub fn lettered_picture(&mut self, named: &NamedWorld) -> Result<Picture, RenderError> {
+    pub fn lettered_picture(
+        &mut self,
+        named: &NamedWorld,
+        direction: Option<&Direction>,
+    ) -> Result<Picture, RenderError> {
+        self.fill(&named.world, direction);
         let size = self.canvas.size();
         let labels = lettering::labels(named, &self.overlays, named.world.time(), &self.camera, size);
         if labels.is_empty() {
-            return self.picture(&named.world);
+            return self.canvas.draw(&self.scene, &self.camera);
         }
-        self.fill(&named.world);
         let letters =
             self.lettering.get_or_insert_with(|| Lettering::new(self.canvas.gpu(), Canvas::format()));
         self.canvas.draw_with(&self.scene, &self.camera, |gpu, encoder, view| {
@@ -110,8 +118,11 @@ impl Photographer {
         })
     }
 
-    fn fill(&mut self, world: &ferrode::World) {
+    fn fill(&mut self, world: &ferrode::World, direction: Option<&Direction>) {
         self.scene.clear(self.camera.target);
+        if let Some(direction) = direction {
+            direction.draw(world, &mut self.painter, &mut self.scene);
+        }
         self.painter.paint(world, &mut self.scene);
         overlay::draw(world, &self.overlays, &self.scale, &mut self.scene);
     }
@@ -144,12 +155,11 @@ pub fn render(args: &RenderArgs) -> Result<(), Failure> {
     let format = Format::of(&args.out).ok_or_else(|| {
         Failure::usage("the name must end in .png, .gif, .mp4, or be a folder, which says what to write")
     })?;
-    let (mut named, warnings) = args.setup.load().map_err(Failure::file)?;
-    if !args.quiet {
-        for warning in warnings.iter().take(5) {
-            eprintln!("{warning}");
-        }
+    let (mut named, mut direction) = match args.demo {
+        Some(demo) => demo::start(demo).map(|(named, direction)| (named, Some(direction))),
+        None => load(args).map(|named| (named, None)),
     }
+    .map_err(Failure::file)?;
     let quality = if args.draft { Quality::live() } else { Quality::fine() };
     let mut photographer =
         Photographer::new(&named, args.size, quality, &args.view).map_err(Failure::output)?;
@@ -170,16 +180,30 @@ pub fn render(args: &RenderArgs) -> Result<(), Failure> {
     for moment in moments {
         // To the step that is nearest.
         while named.world.time() + 0.5 * named.step_size() < moment {
-            named.step().map_err(Failure::file)?;
+            match &mut direction {
+                Some(direction) => direction.step(&mut named).map_err(Failure::file)?,
+                None => named.step().map_err(Failure::file)?,
+            };
             progress.set_position((named.world.time() * 1e3) as u64);
         }
         named.world.sync_geoms();
-        let picture = photographer.lettered_picture(&named).map_err(Failure::output)?;
+        let picture =
+            photographer.lettered_picture(&named, direction.as_ref()).map_err(Failure::output)?;
         film.add(&picture).map_err(Failure::output)?;
     }
     film.finish().map_err(Failure::output)?;
     progress.finish_and_clear();
     Ok(())
+}
+
+fn load(args: &RenderArgs) -> Result<NamedWorld, String> {
+    let (named, warnings) = args.setup.load()?;
+    if !args.quiet {
+        for warning in warnings.iter().take(5) {
+            eprintln!("{warning}");
+        }
+    }
+    Ok(named)
 }
 
 /// A bar over milliseconds of simulated time, on a terminal only.

@@ -5,11 +5,13 @@ use ferrode::{AMotor, AMotorMode, AxisFrame};
 
 pub(super) const DEMO: Demo = Demo {
     name: "amotor",
+    subject: Subject::Motors,
     about: "a shoulder of a ball joint and an angular motor waves an arm",
     property: "the three Euler angles reach 0.7, −0.5 and 0.4 rad, to 2 mrad",
     seconds: 4.0,
     picture_at: 4.0,
-    camera: Camera::new([1.6, -3.0, 2.2], [0.3, 0.0, 1.4]),
+    show: &[],
+    camera: Camera::new([1.4, -2.5, 2.1], [0.25, 0.0, 1.05]),
     build,
 };
 
@@ -42,6 +44,16 @@ fn build() -> Result<Play, Failure> {
                 world.joint_mut::<AMotor>(*motor)?.set_motor_of(i + 1, rate, 500.0)?;
             }
             Ok(())
+        })
+        .draw(|motor, world, drawing| {
+            if let Ok(joint) = world.joint::<AMotor>(*motor) {
+                let shoulder = at(0.0, 0.0, 1.4);
+                drawing.solid(Sphere::new(0.13), Pose::from_position(shoulder), Tint::FRAME);
+                for i in 0..3 {
+                    let axis = joint.axis(i);
+                    drawing.arrow(shoulder, shoulder + axis * 0.5, 0.012, Tint::MARK);
+                }
+            }
         })
         .check(|motor, world| {
             let joint = world.joint::<AMotor>(*motor)?;

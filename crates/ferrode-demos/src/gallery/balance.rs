@@ -5,11 +5,13 @@ use ferrode::{Hinge, Slider};
 
 pub(super) const DEMO: Demo = Demo {
     name: "balance",
+    subject: Subject::Creatures,
     about: "a cart balances a pole, and is pushed twice",
     property: "after eight seconds the pole is upright to 0.5° and the cart back at its place to 2 cm",
     seconds: 10.0,
-    picture_at: 2.4,
-    camera: Camera::new([1.0, -4.4, 1.9], [0.0, 0.0, 1.0]),
+    picture_at: 1.3,
+    show: &[],
+    camera: Camera::new([0.9, -3.7, 1.8], [0.0, 0.0, 0.8]),
     build,
 };
 
@@ -50,6 +52,11 @@ fn build() -> Result<Play, Failure> {
             let force = 44.7 * x + 50.1 * v + 286.6 * lean + 79.5 * rate;
             world.joint_mut::<Slider>(s.rail)?.add_force(force)?;
             Ok(())
+        })
+        .draw(|_, _, drawing| {
+            for x in [-1.9, 1.9] {
+                drawing.block(at(0.08, 0.2, 0.47), at(x, 0.0, 0.235), Tint::FRAME);
+            }
         })
         .check(|s, world| {
             let lean = world.joint::<Hinge>(s.pivot)?.angle().to_degrees();

@@ -9,11 +9,13 @@ const RADIUS: f64 = 0.15;
 
 pub(super) const DEMO: Demo = Demo {
     name: "basket",
+    subject: Subject::Contacts,
     about: "a ball rolls down a chute and jumps into a basket",
     property: "it flies off the lip at the speed that rolling gives, within 5 %, and ends in the basket",
     seconds: 7.0,
     picture_at: 2.15,
-    camera: Camera::new([2.4, -7.5, 3.0], [2.0, 0.0, 1.2]),
+    show: &[],
+    camera: Camera::new([2.2, -7.7, 3.1], [1.85, 0.0, 1.25]),
     build,
 };
 
@@ -28,6 +30,7 @@ fn line(s: f64) -> Vec3 {
 struct Throw {
     ball: BodyKey,
     fastest: f64,
+    trail: Trail,
 }
 
 fn build() -> Result<Play, Failure> {
@@ -59,13 +62,17 @@ fn build() -> Result<Play, Failure> {
     let ball = add_ball(&mut world, RADIUS, 800.0, line(0.06) + at(0.0, 0.0, RADIUS + 0.02))?;
     world.body_mut(ball)?.set_linear_velocity(at(0.3, 0.0, 0.0))?;
     damp(&mut world, 0.0, 0.0005)?;
-    Stage::new(world, 0.002, Throw { ball, fastest: 0.0 })
+    Stage::new(world, 0.002, Throw { ball, fastest: 0.0, trail: Trail::default() })
         .after(|throw, world| {
             let ball = body(world, throw.ball)?;
+            throw.trail.follow(ball.position(), 10);
             if ball.position().x < 2.0 {
                 throw.fastest = throw.fastest.max(ball.linear_velocity().length());
             }
             Ok(())
+        })
+        .draw(|throw, _, drawing| {
+            drawing.path(&throw.trail);
         })
         .check(|throw, world| {
             let p = place(world, throw.ball)?;

@@ -8,11 +8,13 @@ const RESTITUTION: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 
 pub(super) const DEMO: Demo = Demo {
     name: "bounce",
+    subject: Subject::Contacts,
     about: "balls of different restitution fall from the same height",
     property: "after the first bounce each rises to e² times the height it fell, within 1 % of that height",
     seconds: 1.95,
-    picture_at: 1.1,
-    camera: Camera::new([0.0, -6.5, 1.8], [0.0, 0.0, 1.1]),
+    picture_at: 1.2,
+    show: &[],
+    camera: Camera::new([0.8, -5.0, 1.8], [0.0, 0.0, 1.05]),
     build,
 };
 
@@ -48,6 +50,13 @@ fn build() -> Result<Play, Failure> {
                 }
             }
             Ok(())
+        })
+        .draw(|_, _, drawing| {
+            // How high each should rise after its first bounce.
+            for (i, e) in RESTITUTION.into_iter().enumerate() {
+                let (x, z) = (0.8 * (i as f64 - 2.5), RADIUS + e * e * HEIGHT);
+                drawing.rod(at(x - 0.25, 0.0, z), at(x + 0.25, 0.0, z), 0.012, Tint::MARK);
+            }
         })
         .check(|s, _| {
             let mut worst = 0.0_f64;

@@ -6,11 +6,13 @@ const SIDES: [f64; 8] = [1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3];
 
 pub(super) const DEMO: Demo = Demo {
     name: "box-stack",
+    subject: Subject::Heaps,
     about: "eight boxes on each other, largest at the bottom",
     property: "no box moves by more than a millimetre, and all are still",
     seconds: 5.0,
     picture_at: 5.0,
-    camera: Camera::new([6.0, -6.0, 4.0], [0.0, 0.0, 2.3]),
+    show: &[],
+    camera: Camera::new([6.6, -6.6, 4.4], [0.0, 0.0, 2.6]),
     build,
 };
 

@@ -8,11 +8,13 @@ const WHEEL: f64 = 0.18;
 
 pub(super) const DEMO: Demo = Demo {
     name: "buggy",
+    subject: Subject::Creatures,
     about: "a sprung three-wheeled car drives ahead, over a ramp, and turns",
     property: "it keeps its speed, turns to the left, and stays on its wheels",
     seconds: 7.0,
     picture_at: 2.4,
-    camera: Camera::new([1.5, -6.0, 2.6], [3.0, 0.3, 0.3]),
+    show: &[],
+    camera: Camera::new([1.3, -2.7, 1.4], [2.9, 0.1, 0.3]),
     build,
 };
 

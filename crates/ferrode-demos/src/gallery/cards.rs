@@ -12,11 +12,13 @@ const STOREYS: usize = 3;
 
 pub(super) const DEMO: Demo = Demo {
     name: "cards",
+    subject: Subject::Heaps,
     about: "a house of cards, three storeys high",
     property: "no card moves by more than 0.1 mm, and all stand still",
     seconds: 5.0,
     picture_at: 5.0,
-    camera: Camera::new([0.35, -0.5, 0.3], [0.0, 0.0, 0.14]),
+    show: &[],
+    camera: Camera::new([0.27, -0.43, 0.22], [0.0, 0.0, 0.135]),
     build,
 };
 

@@ -9,11 +9,13 @@ const SPAN: f64 = 4.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "chain",
+    subject: Subject::Mechanisms,
     about: "a chain between two posts settles into a catenary",
     property: "its sag is that of the catenary of its length and span, within 1 %",
     seconds: 8.0,
     picture_at: 8.0,
-    camera: Camera::new([0.0, -6.5, 2.2], [0.0, 0.0, 1.7]),
+    show: &[],
+    camera: Camera::new([1.6, -5.6, 2.3], [0.0, 0.0, 1.6]),
     build,
 };
 

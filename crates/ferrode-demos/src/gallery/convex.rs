@@ -5,11 +5,13 @@ use crate::solids;
 
 pub(super) const DEMO: Demo = Demo {
     name: "convex",
+    subject: Subject::Heaps,
     about: "Plato's solids fall into a heap",
     property: "all lie on the ground at rest, none sunk by more than 5 mm",
     seconds: 6.0,
     picture_at: 6.0,
-    camera: Camera::new([4.0, -5.0, 3.2], [0.0, 0.0, 0.5]),
+    show: &[],
+    camera: Camera::new([3.2, -4.2, 2.5], [0.35, -0.15, 0.1]),
     build,
 };
 

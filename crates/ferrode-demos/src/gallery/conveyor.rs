@@ -6,11 +6,13 @@ const SPEED: f64 = 0.8;
 
 pub(super) const DEMO: Demo = Demo {
     name: "conveyor",
+    subject: Subject::Contacts,
     about: "parcels ride around on four conveyor belts",
     property: "a parcel on a belt moves at the belt's speed, within 1 %; none falls off, and the first goes around by 4 rad",
     seconds: 10.0,
     picture_at: 5.0,
-    camera: Camera::new([4.0, -5.5, 4.5], [0.0, 0.0, 0.3]),
+    show: &[],
+    camera: Camera::new([3.5, -4.9, 4.0], [0.0, 0.0, 0.15]),
     build,
 };
 
@@ -56,6 +58,15 @@ fn build() -> Result<Play, Failure> {
                 s.speed = world.body(s.parcels[0])?.linear_velocity().x;
             }
             Ok(())
+        })
+        .draw(|_, _, drawing| {
+            for side in 0..4 {
+                let rotation = turn(Vec3::Z, 90.0 * f64::from(side));
+                for x in [-1.6, -0.6, 0.4] {
+                    let from = rotation.rotate(at(x, -1.85, 0.505));
+                    drawing.arrow(from, from + rotation.rotate(at(0.5, 0.0, 0.0)), 0.02, Tint::MARK);
+                }
+            }
         })
         .check(|s, world| {
             Ok(Findings::new()

@@ -8,11 +8,13 @@ const LAYERS: usize = 16;
 
 pub(super) const DEMO: Demo = Demo {
     name: "ten-thousand",
+    subject: Subject::Engine,
     about: "ten thousand boxes fall into a yard",
     property: "none leaves the yard or sinks into the ground, and contacts are under a centimetre deep on the mean",
     seconds: 4.0,
     picture_at: 4.0,
-    camera: Camera::new([20.0, -26.0, 17.0], [0.0, 0.0, 1.5]),
+    show: &[],
+    camera: Camera::new([15.0, -19.0, 33.0], [0.0, -0.8, 4.0]),
     build,
 };
 

@@ -10,11 +10,13 @@ const SPACING: f64 = 0.25;
 
 pub(super) const DEMO: Demo = Demo {
     name: "dominoes",
+    subject: Subject::Heaps,
     about: "sixty dominoes fall along a winding row",
     property: "all fall, one after the other; the wave runs at 0.6 to 2 times √(g h)",
     seconds: 8.0,
     picture_at: 3.6,
-    camera: Camera::new([3.5, -9.0, 5.5], [3.5, 0.8, 0.0]),
+    show: &[],
+    camera: Camera::new([3.2, -4.8, 3.2], [5.0, 0.6, 0.0]),
     build,
 };
 

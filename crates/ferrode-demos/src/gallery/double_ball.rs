@@ -5,11 +5,13 @@ use ferrode::DBall;
 
 pub(super) const DEMO: Demo = Demo {
     name: "double-ball",
+    subject: Subject::Joints,
     about: "a mobile hangs on rods without mass and swings in balance",
     property: "each rod keeps its length to 0.1 mm; the beams stay level to 3°",
     seconds: 6.0,
     picture_at: 2.0,
-    camera: Camera::new([1.6, -4.2, 2.2], [0.0, 0.0, 1.6]),
+    show: &[],
+    camera: Camera::new([1.2, -3.9, 2.1], [0.0, 0.0, 1.85]),
     build,
 };
 
@@ -64,6 +66,11 @@ fn build() -> Result<Play, Failure> {
                 mobile.tilt = mobile.tilt.max(body(world, *beam)?.vector_to_world(Vec3::X).z.abs());
             }
             Ok(())
+        })
+        .draw(|_, world, drawing| {
+            drawing.floor = Some(0.0);
+            drawing.rods(world, 0.01);
+            drawing.block(at(0.5, 0.5, 0.06), at(0.0, 0.0, 2.93), Tint::FRAME);
         })
         .check(|mobile, _| {
             Ok(Findings::new().at_most("a rod's length is off by (m)", mobile.stretch, 1e-4).at_most(

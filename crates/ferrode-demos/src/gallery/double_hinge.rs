@@ -5,11 +5,13 @@ use ferrode::DHinge;
 
 pub(super) const DEMO: Demo = Demo {
     name: "double-hinge",
+    subject: Subject::Joints,
     about: "a porch swing on two double hinges",
     property: "the seat stays level to 1 mrad, and its hangers keep their length to 0.1 mm",
     seconds: 6.0,
     picture_at: 0.3,
-    camera: Camera::new([1.2, -4.6, 1.8], [0.0, 0.0, 1.3]),
+    show: &[],
+    camera: Camera::new([2.2, -4.3, 2.2], [0.0, 0.0, 1.05]),
     build,
 };
 
@@ -50,6 +52,12 @@ fn build() -> Result<Play, Failure> {
                 swing.stretch = swing.stretch.max((length - joint.distance()).abs());
             }
             Ok(())
+        })
+        .draw(|_, world, drawing| {
+            drawing.rods(world, 0.025);
+            for (x, side) in [(-0.9, -1.0), (-0.9, 1.0), (0.9, -1.0), (0.9, 1.0)] {
+                drawing.rod(at(x, 0.0, 2.3), at(x, side * 0.7, 0.0), 0.05, Tint::FRAME);
+            }
         })
         .check(|swing, _| {
             Ok(Findings::new()

@@ -9,11 +9,13 @@ const SAG: f64 = 0.35;
 
 pub(super) const DEMO: Demo = Demo {
     name: "feedback",
+    subject: Subject::Mechanisms,
     about: "a bridge carries one load, and breaks under two",
     property: "at rest the end joints carry the weight of bridge and load, within 0.5 %; the second load breaks it",
     seconds: 6.0,
-    picture_at: 4.9,
-    camera: Camera::new([1.5, -7.0, 3.6], [0.0, 0.0, 1.8]),
+    picture_at: 5.55,
+    show: &[],
+    camera: Camera::new([1.2, -7.4, 3.6], [0.0, 0.0, 1.6]),
     build,
 };
 

@@ -12,11 +12,13 @@ const GROUND: f64 = 1.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "four-bar",
+    subject: Subject::Mechanisms,
     about: "a four-bar linkage turns rotation into rocking",
     property: "the rocker stands where the loop's closure puts it at every moment, to 0.2 mrad",
     seconds: 5.0,
-    picture_at: 0.8,
-    camera: Camera::new([0.5, -3.2, 1.6], [0.4, 0.0, 1.2]),
+    picture_at: 2.3,
+    show: &[],
+    camera: Camera::new([0.9, -3.0, 1.8], [0.45, 0.0, 0.98]),
     build,
 };
 
@@ -36,8 +38,11 @@ fn knuckle(angle: f64) -> Vec3 {
 struct Linkage {
     crank: BodyKey,
     rocker: BodyKey,
+    coupler: BodyKey,
     motor: JointKey,
     off: f64,
+    /// Of the middle of the coupler.
+    trail: Trail,
 }
 
 fn build() -> Result<Play, Failure> {
@@ -65,8 +70,9 @@ fn build() -> Result<Play, Failure> {
     world.add_ball(Some(coupler), Some(rocker), top)?;
     world.add_hinge(Some(rocker), None, far, Vec3::Y)?;
     world.joint_mut::<Hinge>(motor)?.set_motor(-2.5, 1000.0)?;
-    Stage::new(world, 0.002, Linkage { crank, rocker, motor, off: 0.0 })
+    Stage::new(world, 0.002, Linkage { crank, rocker, coupler, motor, off: 0.0, trail: Trail::default() })
         .after(|linkage, world| {
+            linkage.trail.follow(place(world, linkage.coupler)? - Vec3::Y * 0.08, 6);
             // About y, a positive angle turns x down: away from the angle of a drawing in x and z.
             let base = at(0.0, 0.0, 1.0);
             let arm = (place(world, linkage.crank)? - base) * 2.0;
@@ -75,6 +81,20 @@ fn build() -> Result<Play, Failure> {
             let found = far + (place(world, linkage.rocker)? - far) * 2.0;
             linkage.off = linkage.off.max((found - expected).length() / ROCKER);
             Ok(())
+        })
+        .draw(|linkage, world, drawing| {
+            drawing.floor = Some(0.0);
+            for x in [0.0, GROUND] {
+                drawing.block(at(0.1, 0.06, 1.03), at(x, 0.06, 0.515), Tint::FRAME);
+            }
+            for joint in world.joints() {
+                let pin = world.joint::<Hinge>(joint).map(|hinge| hinge.anchor());
+                let pin = pin.or_else(|_| world.joint::<ferrode::Ball>(joint).map(|ball| ball.anchor()));
+                if let Ok(pin) = pin {
+                    drawing.rod(pin - Vec3::Y * 0.08, pin + Vec3::Y * 0.06, 0.02, Tint::SPRING);
+                }
+            }
+            drawing.path(&linkage.trail);
         })
         .check(|linkage, world| {
             let rate = world.joint::<Hinge>(linkage.motor)?.angle_rate();

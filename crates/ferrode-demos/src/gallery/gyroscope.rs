@@ -8,11 +8,13 @@ const TILT: f64 = 60.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "gyroscope",
+    subject: Subject::Spin,
     about: "a spinning wheel on a stand precesses",
     property: "it goes round at the rate of a steady precession, within 1 %, and does not sink by more than 2°",
     seconds: 5.0,
-    picture_at: 1.0,
-    camera: Camera::new([1.4, -2.0, 1.9], [0.0, 0.0, 1.1]),
+    picture_at: 3.0,
+    show: &[],
+    camera: Camera::new([1.2, -1.8, 1.75], [0.05, 0.0, 0.72]),
     build,
 };
 
@@ -32,6 +34,7 @@ struct Top {
     turned: f64,
     last: Vec3,
     sunk: f64,
+    trail: Trail,
 }
 
 fn build() -> Result<Play, Failure> {
@@ -63,19 +66,30 @@ fn build() -> Result<Play, Failure> {
     body.set_angular_velocity(spin)?;
     body.set_linear_velocity(spin.cross(axle * ARM))?;
     let last = axle;
-    Stage::new(world, 0.000_025, Top { wheel, expected: rate, turned: 0.0, last, sunk: 0.0 })
-        .after(|top, world| {
-            let axle = world.body(top.wheel)?.vector_to_world(Vec3::Z);
-            let (a, b) = (top.last, axle);
-            top.turned += ferrode_math::real::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
-            top.last = axle;
-            let tilt = ferrode_math::real::acos(axle.z.clamp(-1.0, 1.0)).to_degrees();
-            top.sunk = top.sunk.max((tilt - TILT).abs());
-            Ok(())
-        })
-        .check(|top, world| {
-            Ok(Findings::new()
-                .near("precession (rad/s)", top.turned / world.time(), top.expected, 0.01)
-                .at_most("tilt changed by (degrees)", top.sunk, 2.0))
-        })
+    Stage::new(
+        world,
+        0.000_025,
+        Top { wheel, expected: rate, turned: 0.0, last, sunk: 0.0, trail: Trail::default() },
+    )
+    .after(|top, world| {
+        let axle = world.body(top.wheel)?.vector_to_world(Vec3::Z);
+        let (a, b) = (top.last, axle);
+        top.turned += ferrode_math::real::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
+        top.last = axle;
+        top.trail.follow(at(0.0, 0.0, 1.0) + axle * (ARM + 0.05), 200);
+        let tilt = ferrode_math::real::acos(axle.z.clamp(-1.0, 1.0)).to_degrees();
+        top.sunk = top.sunk.max((tilt - TILT).abs());
+        Ok(())
+    })
+    .draw(|top, _, drawing| {
+        drawing.floor = Some(0.0);
+        drawing.path(&top.trail);
+    })
+    .check(|top, world| {
+        Ok(Findings::new().near("precession (rad/s)", top.turned / world.time(), top.expected, 0.01).at_most(
+            "tilt changed by (degrees)",
+            top.sunk,
+            2.0,
+        ))
+    })
 }

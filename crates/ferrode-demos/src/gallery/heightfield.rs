@@ -9,11 +9,13 @@ const SAMPLES: usize = 61;
 
 pub(super) const DEMO: Demo = Demo {
     name: "heightfield",
+    subject: Subject::Heaps,
     about: "balls, boxes and capsules tumble over hills",
     property: "everything is lower than it was, and nothing is under the ground",
     seconds: 5.0,
     picture_at: 2.0,
-    camera: Camera::new([9.0, -9.0, 7.5], [0.0, 0.0, 0.3]),
+    show: &[],
+    camera: Camera::new([7.5, -8.0, 9.5], [0.1, 0.1, -0.3]),
     build,
 };
 

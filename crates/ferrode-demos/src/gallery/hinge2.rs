@@ -9,11 +9,13 @@ const MASS: f64 = 60.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "hinge2",
+    subject: Subject::Joints,
     about: "a wheel's suspension swallows bumps",
     property: "at rest the spring is compressed by m g / k, within 1 %; over bumps of 60 mm the body moves by under 40 mm",
     seconds: 7.0,
     picture_at: 5.0,
-    camera: Camera::new([7.0, -6.0, 2.2], [7.0, 0.0, 0.6]),
+    show: &[],
+    camera: Camera::new([6.9, -2.4, 1.1], [6.35, 0.0, 0.5]),
     build,
 };
 
@@ -76,6 +78,13 @@ fn build() -> Result<Play, Failure> {
                 quarter.swing = quarter.swing.max((top - quarter.height).abs());
             }
             Ok(())
+        })
+        .draw(|quarter, world, drawing| {
+            if let (Ok(hub), Ok(top)) = (place(world, quarter.wheel), place(world, quarter.chassis)) {
+                let aside = at(0.0, -0.16, 0.0);
+                drawing.spring(hub + aside, at(hub.x, 0.0, top.z - 0.12) + aside, 0.06, 6);
+                drawing.rod(hub + aside, hub - aside, 0.03, Tint::FRAME);
+            }
         })
         .check(|quarter, world| {
             Ok(Findings::new()

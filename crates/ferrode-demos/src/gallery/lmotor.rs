@@ -5,11 +5,13 @@ use ferrode::{AxisFrame, LMotor};
 
 pub(super) const DEMO: Demo = Demo {
     name: "lmotor",
+    subject: Subject::Motors,
     about: "a linear motor drives a trolley around a square, with a load on a rope",
     property: "the trolley is back where it began to 1 cm, and was at each corner to 1 cm",
     seconds: 8.0,
     picture_at: 3.0,
-    camera: Camera::new([4.0, -5.0, 3.6], [0.0, 0.0, 1.4]),
+    show: &[],
+    camera: Camera::new([3.9, -5.2, 3.5], [0.0, 0.0, 1.25]),
     build,
 };
 
@@ -20,6 +22,7 @@ struct Crane {
     trolley: BodyKey,
     motor: JointKey,
     worst: f64,
+    trail: Trail,
 }
 
 fn build() -> Result<Play, Failure> {
@@ -47,7 +50,7 @@ fn build() -> Result<Play, Failure> {
         joint.set_axis(i, AxisFrame::World, axis)?;
         joint.set_motor_of(i + 1, 0.0, 20_000.0)?;
     }
-    Stage::new(world, 0.002, Crane { trolley, motor, worst: 0.0 })
+    Stage::new(world, 0.002, Crane { trolley, motor, worst: 0.0, trail: Trail::default() })
         .before(|crane, world| {
             let side = ((world.time() + 1e-9) / 2.0) as usize % 4;
             let p = place(world, crane.trolley)?;
@@ -60,12 +63,22 @@ fn build() -> Result<Play, Failure> {
             Ok(())
         })
         .after(|crane, world| {
+            crane.trail.follow(place(world, crane.trolley)?, 10);
             let side = world.time() / 2.0;
             if (side - side.round()).abs() < 1e-3 {
                 let [x, y] = CORNERS[(side.round() as usize + 3) % 4];
                 crane.worst = crane.worst.max((place(world, crane.trolley)? - at(x, y, 2.6)).length());
             }
             Ok(())
+        })
+        .draw(|crane, world, drawing| {
+            drawing.rods(world, 0.012);
+            for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+                let corner = at(1.3 * x, 1.3 * y, 2.8);
+                drawing.rod(at(corner.x, corner.y, 0.0), corner, 0.04, Tint::FRAME);
+                drawing.rod(corner, at(-1.3 * y, 1.3 * x, 2.8), 0.04, Tint::FRAME);
+            }
+            drawing.path(&crane.trail);
         })
         .check(|crane, world| {
             Ok(Findings::new().at_most("a corner was missed by (m)", crane.worst, 0.01).at_most(

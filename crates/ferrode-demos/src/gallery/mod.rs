@@ -51,7 +51,8 @@ mod wall_crash;
 
 /// What every scene needs.
 mod prelude {
-    pub(super) use crate::demo::{Camera, Demo};
+    pub(super) use crate::demo::{Camera, Demo, Subject};
+    pub(super) use crate::drawing::{Tint, Trail};
     pub(super) use crate::kit::*;
     pub(super) use crate::play::{Play, Stage};
     pub(super) use crate::verdict::{Failure, Findings};
@@ -85,5 +86,4 @@ gallery! {
     lmotor, feedback, friction, rolling_friction, gyroscope, platforms, plane2d, tracks, conveyor, basket, space_stress, steppers,
     ragdolls, robot, newtons_cradle, four_bar, dzhanibekov, dominoes, walker, trebuchet, pendulum_wave, bounce, balance, table,
     crowd,
-
 }

@@ -5,11 +5,13 @@ use crate::solids;
 
 pub(super) const DEMO: Demo = Demo {
     name: "moving-mesh",
+    subject: Subject::Heaps,
     about: "rings of triangles are thrown over a peg",
     property: "the peg stands in the hole of each ring, and the rings lie still",
     seconds: 5.0,
-    picture_at: 5.0,
-    camera: Camera::new([2.6, -3.2, 2.2], [0.0, 0.0, 0.4]),
+    picture_at: 0.25,
+    show: &[],
+    camera: Camera::new([3.4, -4.2, 2.9], [0.0, 0.0, 1.15]),
     build,
 };
 

@@ -11,11 +11,13 @@ const THREAD: f64 = 0.8;
 
 pub(super) const DEMO: Demo = Demo {
     name: "newtons-cradle",
+    subject: Subject::Mechanisms,
     about: "one ball falls in on four, and one flies off at the other side",
     property: "at the first swing the last ball rises as high as the first one fell, within 2 %, and the middle ones stay",
     seconds: 1.4,
     picture_at: 1.05,
-    camera: Camera::new([0.6, -2.6, 1.2], [0.0, 0.0, 0.9]),
+    show: &[],
+    camera: Camera::new([0.95, -2.3, 1.6], [0.1, 0.0, 1.0]),
     build,
 };
 
@@ -55,6 +57,17 @@ fn build() -> Result<Play, Failure> {
                 }
             }
             Ok(())
+        })
+        .draw(|_, world, drawing| {
+            drawing.floor = Some(0.4);
+            drawing.rods(world, 0.004);
+            let (half, top) = (0.62, 0.8 + THREAD);
+            for y in [-0.3, 0.3] {
+                drawing.rod(at(-half, y, top), at(half, y, top), 0.02, Tint::FRAME);
+                for x in [-half, half] {
+                    drawing.rod(at(x, y, top), at(x, y, 0.4), 0.02, Tint::FRAME);
+                }
+            }
         })
         .check(|cradle, _| {
             let middle = cradle.highest[1..COUNT - 1].iter().copied().fold(0.0, f64::max);

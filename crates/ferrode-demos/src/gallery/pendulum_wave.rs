@@ -12,11 +12,13 @@ const START: f64 = 8.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "pendulum-wave",
+    subject: Subject::Mechanisms,
     about: "twelve pendulums drift apart into waves, and come together again",
     property: "after twenty seconds all swing in step again, to 4 % of a swing",
     seconds: CYCLE,
     picture_at: 5.0,
-    camera: Camera::new([3.2, -4.5, 2.4], [0.0, 0.0, 1.6]),
+    show: &[],
+    camera: Camera::new([1.6, -3.1, 2.3], [0.1, 0.0, 1.62]),
     build,
 };
 
@@ -48,13 +50,21 @@ fn build() -> Result<Play, Failure> {
         world.add_hinge(Some(bob), None, pivot, Vec3::X)?;
         bobs.push(bob);
     }
-    Stage::new(world, 0.001, bobs).check(|bobs, world| {
-        let mut apart = 0.0_f64;
-        for key in bobs {
-            let down = body(world, *key)?.vector_to_world(-Vec3::Z);
-            let angle = real::atan2(down.y, -down.z).to_degrees();
-            apart = apart.max((angle - START).abs() / (2.0 * START));
-        }
-        Ok(Findings::new().at_most("out of step by (parts of a swing)", apart, 0.04))
-    })
+    Stage::new(world, 0.001, bobs)
+        .draw(|_, _, drawing| {
+            drawing.floor = Some(0.9);
+            drawing.rod(at(-1.55, 0.0, 2.2), at(1.55, 0.0, 2.2), 0.02, Tint::FRAME);
+            for (x, y) in [(-1.55, -0.3), (-1.55, 0.3), (1.55, -0.3), (1.55, 0.3)] {
+                drawing.rod(at(x, 0.0, 2.2), at(x, y, 0.9), 0.02, Tint::FRAME);
+            }
+        })
+        .check(|bobs, world| {
+            let mut apart = 0.0_f64;
+            for key in bobs {
+                let down = body(world, *key)?.vector_to_world(-Vec3::Z);
+                let angle = real::atan2(down.y, -down.z).to_degrees();
+                apart = apart.max((angle - START).abs() / (2.0 * START));
+            }
+            Ok(Findings::new().at_most("out of step by (parts of a swing)", apart, 0.04))
+        })
 }

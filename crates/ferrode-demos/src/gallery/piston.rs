@@ -9,11 +9,13 @@ const SPEED: f64 = 3.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "piston",
+    subject: Subject::Joints,
     about: "a crank drives a piston",
     property: "the piston is at r cos φ + √(l² − r² sin² φ) at every moment, to 0.1 mm",
     seconds: 5.0,
     picture_at: 0.4,
-    camera: Camera::new([0.8, -3.4, 1.8], [0.6, 0.0, 1.0]),
+    show: &[],
+    camera: Camera::new([0.9, -2.3, 1.6], [0.55, 0.0, 0.8]),
     build,
 };
 
@@ -60,6 +62,21 @@ fn build() -> Result<Play, Failure> {
             let expected = CRANK * cos + (ROD * ROD - CRANK * CRANK * sin * sin).sqrt();
             engine.off = engine.off.max((place(world, engine.head)?.x - expected).abs());
             Ok(())
+        })
+        .draw(|_, world, drawing| {
+            drawing.floor = Some(0.0);
+            let far = CRANK + ROD;
+            for side in [-1.0, 1.0] {
+                let rail = at(far, 0.0, 1.0 + side * 0.17);
+                drawing.block(at(2.0 * CRANK + 0.3, 0.3, 0.03), rail, Tint::FRAME);
+            }
+            drawing.block(at(0.1, 0.3, 0.82), at(far + CRANK + 0.1, 0.0, 0.41), Tint::FRAME);
+            drawing.block(at(0.12, 0.1, 1.06), at(0.0, 0.12, 0.53), Tint::FRAME);
+            for joint in world.joints() {
+                if let Ok(pin) = world.joint::<Hinge>(joint).map(|hinge| hinge.anchor()) {
+                    drawing.rod(pin - Vec3::Y * 0.13, pin + Vec3::Y * 0.13, 0.028, Tint::SPRING);
+                }
+            }
         })
         .check(|engine, world| {
             let rate = world.joint::<Hinge>(engine.crank)?.angle_rate();

@@ -5,11 +5,13 @@ use ferrode_math::real;
 
 pub(super) const DEMO: Demo = Demo {
     name: "platforms",
+    subject: Subject::Contacts,
     about: "a lift, a shuttle and a carousel carry boxes",
     property: "each box stays where it stands on its platform, to 2 mm",
     seconds: 8.0,
     picture_at: 2.2,
-    camera: Camera::new([3.5, -7.5, 4.5], [0.0, 0.0, 0.8]),
+    show: &[],
+    camera: Camera::new([2.8, -6.2, 3.4], [0.45, 0.0, 0.5]),
     build,
 };
 

@@ -5,11 +5,13 @@ use ferrode::PU;
 
 pub(super) const DEMO: Demo = Demo {
     name: "pu",
+    subject: Subject::Joints,
     about: "a telescope on a prismatic-universal joint pans, tilts and extends",
     property: "it reaches 0.4 rad, −0.3 rad and 0.3 m, to 2 mrad and 1 mm",
     seconds: 4.0,
     picture_at: 4.0,
-    camera: Camera::new([2.6, -3.4, 2.4], [0.8, 0.0, 1.2]),
+    show: &[],
+    camera: Camera::new([2.0, -2.8, 2.1], [0.75, 0.1, 0.95]),
     build,
 };
 
@@ -34,6 +36,14 @@ fn build() -> Result<Play, Failure> {
                 pu.set_motor_of(i + 1, (4.0 * error).clamp(-0.4, 0.4), 5000.0)?;
             }
             Ok(())
+        })
+        .draw(|joint, world, drawing| {
+            if let (Ok(joint), Some((_, tube))) = (world.joint::<PU>(*joint), world.bodies().next()) {
+                drawing.block(at(0.2, 0.2, 0.12), at(0.0, 0.0, 1.26), Tint::FRAME);
+                drawing.rod(at(0.0, 0.0, 1.3), joint.anchor(), 0.05, Tint::FRAME);
+                // The inner tube.
+                drawing.rod(joint.anchor(), tube.position(), 0.06, Tint::FRAME);
+            }
         })
         .check(|joint, world| {
             let pu = world.joint::<PU>(*joint)?;

@@ -6,11 +6,13 @@ const ROWS: usize = 10;
 
 pub(super) const DEMO: Demo = Demo {
     name: "pyramid",
+    subject: Subject::Heaps,
     about: "fifty-five boxes in a pyramid",
     property: "it stands: no box has moved by more than 5 mm",
     seconds: 4.0,
     picture_at: 4.0,
-    camera: Camera::new([0.0, -16.0, 6.0], [0.0, 0.0, 4.0]),
+    show: &[],
+    camera: Camera::new([6.0, -16.5, 7.5], [0.0, 0.0, 4.7]),
     build,
 };
 

@@ -5,11 +5,13 @@ use ferrode::{Hinge, Universal};
 
 pub(super) const DEMO: Demo = Demo {
     name: "ragdolls",
+    subject: Subject::Creatures,
     about: "five ragdolls tumble down a stair",
     property: "their joints open by under 10 mm, knees and elbows bend only their way, and nobody falls through the stair",
     seconds: 5.0,
-    picture_at: 1.1,
-    camera: Camera::new([4.5, -7.5, 4.0], [0.6, 0.0, 1.2]),
+    picture_at: 0.9,
+    show: &[],
+    camera: Camera::new([3.8, -5.6, 3.3], [-0.1, 0.0, 0.8]),
     build,
 };
 

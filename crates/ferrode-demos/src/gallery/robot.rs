@@ -9,11 +9,13 @@ const GAINS: [f64; 2] = [300.0, 8.0];
 
 pub(super) const DEMO: Demo = Demo {
     name: "robot",
+    subject: Subject::Creatures,
     about: "a four-legged robot, read from URDF, is dropped and stands",
     property: "its base is level to 1°, at rest, and its joints open by under 0.1 mm",
     seconds: 3.0,
     picture_at: 3.0,
-    camera: Camera::new([1.2, -1.5, 0.9], [0.0, 0.0, 0.3]),
+    show: &[],
+    camera: Camera::new([0.9, -1.15, 0.7], [0.02, 0.0, 0.22]),
     build,
 };
 

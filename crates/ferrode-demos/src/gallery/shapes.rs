@@ -6,11 +6,13 @@ use ferrode::{Cone, Ellipsoid};
 
 pub(super) const DEMO: Demo = Demo {
     name: "shapes",
+    subject: Subject::Heaps,
     about: "sixty-three bodies of seven shapes fall into a tray",
     property: "all end in the tray, at rest, none sunk by more than 5 mm",
     seconds: 8.0,
     picture_at: 8.0,
-    camera: Camera::new([3.0, -4.2, 3.8], [0.0, 0.0, 0.3]),
+    show: &[],
+    camera: Camera::new([2.75, -3.85, 3.7], [0.0, 0.0, 0.05]),
     build,
 };
 

@@ -10,11 +10,13 @@ const STIFFNESS: f64 = 80.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "slider",
+    subject: Subject::Joints,
     about: "a mass on a spring slides to and fro",
     property: "its period is 2π √(m/k), within 0.5 %",
     seconds: 6.0,
     picture_at: 0.05,
-    camera: Camera::new([1.0, -3.0, 2.0], [0.0, 0.0, 1.0]),
+    show: &[],
+    camera: Camera::new([0.8, -2.7, 1.9], [0.0, 0.0, 0.8]),
     build,
 };
 
@@ -50,6 +52,15 @@ fn build() -> Result<Play, Failure> {
             }
             spring.before = now;
             Ok(())
+        })
+        .draw(|spring, world, drawing| {
+            for side in [-1.0, 1.0] {
+                drawing.block(at(0.08, 0.3, 1.2), at(side * 1.2, 0.0, 0.6), Tint::FRAME);
+                if let Ok(joint) = world.joint::<Slider>(spring.joint).and_then(|joint| joint.position()) {
+                    let face = at(joint + side * 0.2, 0.0, 1.0);
+                    drawing.spring(face, at(side * 1.16, 0.0, 1.0), 0.07, 9);
+                }
+            }
         })
         .check(|spring, world| {
             let (Some(first), Some(last)) = (spring.crossings.first(), spring.crossings.last()) else {

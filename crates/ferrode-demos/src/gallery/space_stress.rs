@@ -10,11 +10,13 @@ const HALF: f64 = 7.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "space-stress",
+    subject: Subject::Engine,
     about: "six hundred boxes drift through each other: which of their boxes overlap?",
     property: "a tree, a grid, a quadtree, a sweep and a list of all find the same pairs in every step",
     seconds: 3.0,
     picture_at: 1.0,
-    camera: Camera::new([14.0, -14.0, 12.0], [0.0, 0.0, 0.0]),
+    show: &[],
+    camera: Camera::new([17.0, -17.0, 14.0], [0.0, 0.0, 0.0]),
     build,
 };
 

@@ -7,11 +7,13 @@ const SIDES: [f64; 2] = [2.0, 1.2];
 
 pub(super) const DEMO: Demo = Demo {
     name: "table",
+    subject: Subject::Contacts,
     about: "a table on four legs, with a load near one corner",
     property: "the legs' forces balance weight and moments to 0.01 %, and are those of least norm to 1 %",
     seconds: 2.0,
     picture_at: 2.0,
-    camera: Camera::new([2.6, -3.2, 2.0], [0.0, 0.0, 0.5]),
+    show: &["forces"],
+    camera: Camera::new([2.0, -2.6, 1.8], [0.05, 0.0, 0.45]),
     build,
 };
 

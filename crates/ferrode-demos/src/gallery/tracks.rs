@@ -8,11 +8,13 @@ const GAUGE: f64 = 1.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "tracks",
+    subject: Subject::Creatures,
     about: "a tracked vehicle drives ahead, over a step, and turns on the spot",
     property: "it runs at its tracks' speed within 2 %, and turns when they run opposite",
     seconds: 7.0,
     picture_at: 3.2,
-    camera: Camera::new([1.0, -7.0, 3.6], [3.0, 0.0, 0.4]),
+    show: &[],
+    camera: Camera::new([1.7, -4.7, 2.7], [3.3, 0.0, 0.15]),
     build,
 };
 

@@ -7,11 +7,13 @@ const SPEED: f64 = 2.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "transmission",
+    subject: Subject::Motors,
     about: "motors drive a pair of gears, a chain and a bevel gear",
     property: "every wheel turns at its ratio, to 0.1 %",
     seconds: 4.0,
     picture_at: 2.0,
-    camera: Camera::new([0.8, -6.0, 2.6], [0.4, 0.0, 1.0]),
+    show: &[],
+    camera: Camera::new([0.9, -4.9, 2.4], [0.4, 0.0, 0.8]),
     build,
 };
 
@@ -73,11 +75,35 @@ fn build() -> Result<Play, Failure> {
         ("chain wheel (rad/s)", chain[1].1, SPEED * 0.3 / 0.45),
         ("bevel wheel (rad/s)", bevel[1].1, -SPEED),
     ];
-    Stage::new(world, 0.005, driven).check(|driven, world| {
-        let mut findings = Findings::new();
-        for (name, hinge, expected) in driven {
-            findings = findings.near(name, world.joint::<Hinge>(*hinge)?.angle_rate(), *expected, 1e-3);
-        }
-        Ok(findings)
-    })
+    Stage::new(world, 0.005, driven)
+        .draw(|_, world, drawing| {
+            drawing.floor = Some(0.0);
+            for (_, body) in world.bodies() {
+                let place = body.position();
+                let back = body.vector_to_world(Vec3::Z) * 0.1;
+                drawing.block(at(0.08, 0.08, 1.0), at(place.x + back.x, place.y + back.y, 0.5), Tint::FRAME);
+            }
+            for geom in world.geoms() {
+                let Ok(geom) = world.geom(geom.key) else { continue };
+                if let Shape::Cylinder(wheel) = geom.shape() {
+                    // A spoke, to see it turn.
+                    let sides = at(1.8 * wheel.radius(), 0.06, wheel.length() + 0.02);
+                    drawing.solid(Cuboid::new(sides), *geom.pose(), Tint::SPRING);
+                }
+            }
+            // The chain, along both tangents of its wheels.
+            let (near, far) = (at(-0.2, 0.0, 1.0), at(1.2, 0.0, 1.0));
+            let cos: f64 = (0.3 - 0.45) / (far.x - near.x);
+            for side in [-1.0, 1.0] {
+                let out = at(cos, 0.0, side * (1.0 - cos * cos).sqrt());
+                drawing.rod(near + out * 0.31, far + out * 0.46, 0.025, Tint::ROPE);
+            }
+        })
+        .check(|driven, world| {
+            let mut findings = Findings::new();
+            for (name, hinge, expected) in driven {
+                findings = findings.near(name, world.joint::<Hinge>(*hinge)?.angle_rate(), *expected, 1e-3);
+            }
+            Ok(findings)
+        })
 }

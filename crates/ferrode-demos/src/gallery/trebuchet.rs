@@ -9,11 +9,13 @@ const SLING: f64 = 2.2;
 
 pub(super) const DEMO: Demo = Demo {
     name: "trebuchet",
+    subject: Subject::Mechanisms,
     about: "a falling weight throws a stone",
     property: "the stone flies at least ten metres far, on the parabola of its release, within 1 %; no energy is made",
     seconds: 6.0,
-    picture_at: 0.95,
-    camera: Camera::new([3.0, -14.0, 4.5], [3.0, 0.0, 2.5]),
+    picture_at: 0.7,
+    show: &[],
+    camera: Camera::new([-0.6, -9.6, 3.6], [-0.9, 0.0, 2.95]),
     build,
 };
 
@@ -28,6 +30,7 @@ struct Engine {
     /// How far off the parabola so far, over the way flown.
     off: f64,
     landed: Option<f64>,
+    trail: Trail,
 }
 
 fn build() -> Result<Play, Failure> {
@@ -67,8 +70,16 @@ fn build() -> Result<Play, Failure> {
     joint.set_anchor1(from)?;
     joint.set_anchor2(long)?;
     let energy = world.energy().total();
-    let engine =
-        Engine { stone, sling: Some(sling), energy, most: 0.0, release: None, off: 0.0, landed: None };
+    let engine = Engine {
+        stone,
+        sling: Some(sling),
+        energy,
+        most: 0.0,
+        release: None,
+        off: 0.0,
+        landed: None,
+        trail: Trail::default(),
+    };
     Stage::new(world, 0.001, engine)
         .after(|engine, world| {
             engine.most = engine.most.max(world.energy().total() - engine.energy);
@@ -76,6 +87,7 @@ fn build() -> Result<Play, Failure> {
                 let stone = world.body(engine.stone)?;
                 (stone.position(), stone.linear_velocity())
             };
+            engine.trail.follow(p, 10);
             if let Some(sling) = engine.sling {
                 // The sling opens when the stone flies ahead at 45° or flatter.
                 if v.x > 4.0 && v.z < v.x && p.z > 2.0 {
@@ -93,6 +105,11 @@ fn build() -> Result<Play, Failure> {
                 }
             }
             Ok(())
+        })
+        .draw(|engine, world, drawing| {
+            drawing.rods(world, 0.02);
+            drawing.rod(at(0.0, -0.55, 2.6), at(0.0, 0.55, 2.6), 0.06, Tint::FRAME);
+            drawing.path(&engine.trail);
         })
         .check(|engine, _| {
             Ok(Findings::new()

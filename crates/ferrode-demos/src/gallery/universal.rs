@@ -9,17 +9,20 @@ const SPEED: f64 = 4.0;
 
 pub(super) const DEMO: Demo = Demo {
     name: "universal",
+    subject: Subject::Joints,
     about: "a Cardan joint drives a bent shaft",
     property: "the driven shaft's speed goes between ω cos β and ω / cos β, within 1 %",
     seconds: 5.0,
     picture_at: 2.0,
-    camera: Camera::new([0.2, -3.2, 2.0], [0.2, 0.0, 1.0]),
+    show: &[],
+    camera: Camera::new([0.5, -2.5, 2.0], [0.0, 0.1, 0.72]),
     build,
 };
 
 #[derive(Clone)]
 struct Shaft {
     driver: JointKey,
+    cross: JointKey,
     driven: BodyKey,
     axis: Vec3,
     slowest: f64,
@@ -47,8 +50,7 @@ fn build() -> Result<Play, Failure> {
     // The cross: one arm fixed to each shaft. Two hinges and this close a loop, which leaves one freedom.
     let cross = world.add_universal(Some(first), Some(second), middle, Vec3::Z, axis.cross(Vec3::Z))?;
     world.joint_mut::<Hinge>(driver)?.set_motor(SPEED, 500.0)?;
-    debug_assert!(world.joint::<Universal>(cross).is_ok());
-    let shaft = Shaft { driver, driven: second, axis, slowest: f64::INFINITY, quickest: 0.0 };
+    let shaft = Shaft { driver, cross, driven: second, axis, slowest: f64::INFINITY, quickest: 0.0 };
     Stage::new(world, 0.002, shaft)
         .after(|shaft, world| {
             if world.time() > 1.0 {
@@ -57,6 +59,24 @@ fn build() -> Result<Play, Failure> {
                 shaft.quickest = shaft.quickest.max(speed);
             }
             Ok(())
+        })
+        .draw(|shaft, world, drawing| {
+            drawing.floor = Some(0.0);
+            let middle = at(0.0, 0.0, 1.0);
+            // Bearings at both ends, and the cross.
+            for place in [middle - Vec3::X, middle + shaft.axis] {
+                drawing.block(at(0.07, 0.2, 1.1), place - at(0.0, 0.0, 0.45), Tint::FRAME);
+            }
+            if let Ok(cross) = world.joint::<Universal>(shaft.cross) {
+                for arm in [cross.axis1(), cross.axis2()] {
+                    drawing.rod(
+                        cross.anchor() - arm * 0.13,
+                        cross.anchor() + arm * 0.13,
+                        0.025,
+                        Tint::SPRING,
+                    );
+                }
+            }
         })
         .check(|shaft, world| {
             let beta = real::cos(BEND.to_radians());

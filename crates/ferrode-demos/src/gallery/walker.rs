@@ -9,11 +9,13 @@ const PERIOD: f64 = 0.8;
 
 pub(super) const DEMO: Demo = Demo {
     name: "walker",
+    subject: Subject::Creatures,
     about: "a six-legged creature walks",
     property: "it walks two metres ahead, upright, and strays by less than a fifth of its way",
     seconds: 10.0,
     picture_at: 4.0,
-    camera: Camera::new([2.2, -3.4, 1.8], [0.9, 0.0, 0.3]),
+    show: &[],
+    camera: Camera::new([2.7, -2.4, 1.35], [1.75, 0.0, 0.2]),
     build,
 };
 

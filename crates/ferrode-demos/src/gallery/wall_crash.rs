@@ -4,11 +4,13 @@ use super::prelude::*;
 
 pub(super) const DEMO: Demo = Demo {
     name: "wall-crash",
+    subject: Subject::Heaps,
     about: "a heavy ball breaks through a brick wall",
     property: "the ball goes through, a dozen bricks fly, and no step makes energy",
     seconds: 4.0,
-    picture_at: 1.0,
-    camera: Camera::new([7.5, -9.0, 4.5], [1.0, 0.0, 1.5]),
+    picture_at: 0.65,
+    show: &[],
+    camera: Camera::new([6.2, -7.2, 3.6], [0.7, 0.0, 1.5]),
     build,
 };
 

@@ -46,6 +46,7 @@
 //! follower. The coupling is as exact as the forces are foreseeable: a step late for those that the step's own
 //! constraints bring.
 
+mod adopt;
 mod bodies;
 mod check;
 mod connect;

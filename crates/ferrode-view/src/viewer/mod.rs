@@ -402,6 +402,9 @@ impl Viewer {
         let camera = self.camera();
         scene.clear(camera.target);
         let world = &self.playback.named.world;
+        if let Some(direction) = &self.playback.direction {
+            direction.draw(world, &mut self.painter, scene);
+        }
         self.painter.paint(world, scene);
         overlay::draw(world, &self.overlays, &self.scale, scene);
         if let Some(grab) = &self.grab

@@ -44,6 +44,9 @@ impl Viewer {
     fn sections(&mut self, ui: &mut egui::Ui) {
         ui.add_space(4.0);
         self.time_controls(ui);
+        if let Some(direction) = &self.playback.direction {
+            direction.show(ui);
+        }
         ui.separator();
         self.overlay_controls(ui);
         ui.separator();

@@ -1,5 +1,6 @@
 //! Time: running, pausing, stepping, winding back.
 
+use crate::demo::Direction;
 use crate::setup::Setup;
 use crate::viewer::source::Recording;
 use ferrode::{BodyKey, Error, Pose, StepTimes, Stepper, Vec3, World};
@@ -45,16 +46,24 @@ pub struct Playback {
     pub speed: f64,
     /// Of the last step.
     pub facts: StepFacts,
+    /// What drives the world, if it is a demo's.
+    pub direction: Option<Direction>,
     setup: Setup,
-    start: NamedWorld,
+    start: Moment,
     recording: Option<Recording>,
-    history: VecDeque<NamedWorld>,
+    history: VecDeque<Moment>,
     /// Seconds that are to be simulated yet.
     due: f64,
     /// Simulated before the world was built anew with another step size, s.
     earlier: f64,
     kept: f64,
 }
+
+/// A world and what drives it, at one time.
+type Moment = (NamedWorld, Option<Direction>);
+
+/// What can go wrong with a step: in the engine, or in a demo.
+type Done = Result<(), Box<dyn std::error::Error + Send + Sync>>;
 
 /// Seconds between the states that are kept for winding back.
 const KEEP_EVERY: f64 = 1.0 / 15.0;
@@ -68,8 +77,9 @@ impl Playback {
     pub fn new(setup: Setup, mut named: NamedWorld) -> Self {
         named.world.set_step_clock(Some(seconds));
         Self {
-            start: named.clone(),
+            start: (named.clone(), None),
             named,
+            direction: None,
             paused: false,
             speed: 1.0,
             facts: StepFacts::default(),
@@ -80,6 +90,12 @@ impl Playback {
             earlier: 0.0,
             kept: f64::NEG_INFINITY,
         }
+    }
+
+    /// A demo to run.
+    pub fn of_demo(named: NamedWorld, direction: Direction) -> Self {
+        let start = (named.clone(), Some(direction.clone()));
+        Self { start, direction: Some(direction), ..Self::new(Setup::default(), named) }
     }
 
     /// A recording to show on a world.
@@ -107,7 +123,7 @@ impl Playback {
         match &self.recording {
             Some(recording) => recording.range(),
             None => {
-                [self.history.front().map_or(self.time(), |w| self.earlier + w.world.time()), self.time()]
+                [self.history.front().map_or(self.time(), |m| self.earlier + m.0.world.time()), self.time()]
             }
         }
     }
@@ -116,12 +132,7 @@ impl Playback {
     ///
     /// # Errors
     /// The engine refuses a step.
-    pub fn advance(
-        &mut self,
-        seconds: f64,
-        most: Duration,
-        mut before: impl FnMut(&mut World, f64),
-    ) -> Result<(), Error> {
+    pub fn advance(&mut self, seconds: f64, most: Duration, mut before: impl FnMut(&mut World, f64)) -> Done {
         if self.paused {
             return Ok(());
         }
@@ -130,7 +141,7 @@ impl Playback {
             let time = recording.time() + self.due;
             self.due = 0.0;
             recording.seek(time);
-            return self.show_recorded();
+            return Ok(self.show_recorded()?);
         }
         let start = Instant::now();
         while self.due >= self.named.step_size() {
@@ -155,23 +166,26 @@ impl Playback {
     /// Makes one step (or shows the next recorded moment).
     ///
     /// # Errors
-    /// The engine refuses the step.
-    pub fn single_step(&mut self, before: &mut impl FnMut(&mut World, f64)) -> Result<(), Error> {
+    /// The engine refuses the step, or a demo's own doing.
+    pub fn single_step(&mut self, before: &mut impl FnMut(&mut World, f64)) -> Done {
         self.step(before)?;
         self.follow();
         Ok(())
     }
 
-    fn step(&mut self, before: &mut impl FnMut(&mut World, f64)) -> Result<(), Error> {
+    fn step(&mut self, before: &mut impl FnMut(&mut World, f64)) -> Done {
         if let Some(recording) = &mut self.recording {
             recording.next();
-            return self.show_recorded();
+            return Ok(self.show_recorded()?);
         }
         self.keep();
         let h = self.named.step_size();
         before(&mut self.named.world, h);
         let clock = Instant::now();
-        let step = self.named.step()?;
+        let step = match &mut self.direction {
+            Some(direction) => direction.step(&mut self.named)?,
+            None => self.named.step()?,
+        };
         self.facts = StepFacts {
             wall: clock.elapsed().as_secs_f64(),
             contacts: step.contacts,
@@ -194,7 +208,7 @@ impl Playback {
         while self.history.len() >= most {
             self.history.pop_front();
         }
-        self.history.push_back(self.named.clone());
+        self.history.push_back((self.named.clone(), self.direction.clone()));
     }
 
     /// Goes back to the state kept before this one; `false` if there is none.
@@ -208,7 +222,7 @@ impl Playback {
             return self.show_recorded().map(|()| true);
         }
         while let Some(state) = self.history.pop_back() {
-            if state.world.time() < self.named.world.time() {
+            if state.0.world.time() < self.named.world.time() {
                 self.take(state);
                 return Ok(true);
             }
@@ -226,7 +240,7 @@ impl Playback {
             return self.show_recorded();
         }
         while let Some(state) = self.history.pop_back() {
-            if self.earlier + state.world.time() <= time || self.history.is_empty() {
+            if self.earlier + state.0.world.time() <= time || self.history.is_empty() {
                 self.take(state);
                 break;
             }
@@ -234,9 +248,9 @@ impl Playback {
         Ok(())
     }
 
-    fn take(&mut self, state: NamedWorld) {
-        self.kept = state.world.time();
-        self.named = state;
+    fn take(&mut self, (named, direction): Moment) {
+        self.kept = named.world.time();
+        (self.named, self.direction) = (named, direction);
         self.due = 0.0;
     }
 
@@ -252,7 +266,7 @@ impl Playback {
         }
         self.history.clear();
         let stepper = self.named.world.stepper;
-        self.named = self.start.clone();
+        (self.named, self.direction) = self.start.clone();
         self.named.world.stepper = stepper;
         (self.due, self.earlier, self.kept) = (0.0, 0.0, f64::NEG_INFINITY);
         Ok(())
@@ -272,16 +286,19 @@ impl Playback {
     /// anew for it, and takes over where everything is and how it moves; what was shot or dropped is not taken along.
     ///
     /// # Errors
-    /// The step size is no positive number.
+    /// The step size is no positive number, or a demo's, which was made for its own.
     pub fn set_step_size(&mut self, h: f64) -> Result<(), String> {
+        if self.direction.is_some() {
+            return Err("a demo keeps its step size: what it measures depends on it".to_owned());
+        }
         if self.recording.is_some() {
             return Ok(());
         }
         let time = self.time();
         let stepper = self.named.world.stepper;
-        let mut rebuilt = self.setup.build(&self.start.scene, Some(h))?;
+        let mut rebuilt = self.setup.build(&self.start.0.scene, Some(h))?;
         rebuilt.world.set_step_clock(Some(seconds));
-        self.start = rebuilt.clone();
+        self.start = (rebuilt.clone(), None);
         let states: Vec<State> = (0..self.named.scene.links.len()).map(|n| self.state(LinkId(n))).collect();
         for (index, state) in states.into_iter().enumerate() {
             let Some((body, state)) = rebuilt.link_body(LinkId(index)).zip(state) else { continue };

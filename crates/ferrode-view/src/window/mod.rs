@@ -5,6 +5,7 @@ mod interface;
 mod keys;
 mod meter;
 
+use crate::demo;
 use crate::failure::Failure;
 use crate::overlay::Overlays;
 use crate::setup::Setup;
@@ -13,6 +14,7 @@ use crate::viewer::Viewer;
 use crate::viewer::playback::Playback;
 use crate::viewer::script::Script;
 use crate::viewer::source::Recording;
+use ferrode_demos::Demo;
 use ferrode_scene::{BuildOptions, LoadOptions, build, load_str};
 use std::path::PathBuf;
 use winit::event_loop::EventLoop;
@@ -22,6 +24,8 @@ use winit::event_loop::EventLoop;
 pub struct ViewArgs {
     /// The world.
     pub setup: Setup,
+    /// A demo in place of the file's world.
+    pub demo: Option<&'static Demo>,
     /// A recording to show on it; without a world file its links are small boxes.
     pub recording: Option<PathBuf>,
     /// Where the camera stands.
@@ -60,9 +64,10 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     for value in &args.plots {
         viewer.plot_named(value).map_err(Failure::usage)?;
     }
-    let events = EventLoop::new().map_err(|_| Failure::output(no_display()))?;
+    let events = EventLoop::new().map_err(|_| Failure::output(no_display(args)))?;
     let name = args.recording.as_ref().unwrap_or(&args.setup.file);
-    let title = name.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let name = name.file_name().unwrap_or_default().to_string_lossy();
+    let title = args.demo.map_or(name.as_ref(), |demo| demo.name);
     let meter = args.frames.map(|frames| meter::Meter::new(frames as usize));
     let title = format!("{title} – Ferrode");
     let mut app = app::App::new(viewer, script, meter, title, events.owned_display_handle());
@@ -70,13 +75,22 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     app.outcome()
 }
 
-fn no_display() -> String {
-    "there is no display for a window: draw pictures with `ferrode render FILE -o out.png` (or out.mp4), or open a virtual \
-     display with `xvfb-run ferrode view FILE`"
-        .to_owned()
+fn no_display(args: &ViewArgs) -> String {
+    let (picture, window) = match args.demo {
+        Some(demo) => (format!("demo {}", demo.name), format!("demo {}", demo.name)),
+        None => ("render FILE".to_owned(), "view FILE".to_owned()),
+    };
+    format!(
+        "there is no display for a window: draw pictures with `ferrode {picture} -o out.png` (or out.mp4), or open a virtual \
+         display with `xvfb-run ferrode {window}`"
+    )
 }
 
 fn playback(args: &ViewArgs) -> Result<Playback, String> {
+    if let Some(demo) = args.demo {
+        let (named, direction) = demo::start(demo)?;
+        return Ok(Playback::of_demo(named, direction));
+    }
     let Some(path) = &args.recording else {
         let (named, warnings) = args.setup.load()?;
         for warning in warnings.iter().take(5) {
