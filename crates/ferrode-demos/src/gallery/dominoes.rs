@@ -16,7 +16,7 @@ pub(super) const DEMO: Demo = Demo {
     seconds: 8.0,
     picture_at: 3.6,
     show: &[],
-    camera: Camera::new([3.2, -4.8, 3.2], [5.0, 0.6, 0.0]),
+    camera: Camera::new([3.2, -6.4, 4.2], [5.5, 0.9, 0.0]),
     build,
 };
 
