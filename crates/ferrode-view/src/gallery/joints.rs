@@ -85,8 +85,8 @@ fn ball_on_slab(world: &mut World) -> Result<[BodyKey; 2], Error> {
     // It slides, so that friction slants the force.
     world.body_mut(ball)?.set_position(Vec3::new(0.0, 0.0, HEIGHT - 0.002))?;
     world.body_mut(ball)?.set_linear_velocity(Vec3::new(-2.0, 0.0, 0.0))?;
-    let slab = add(world, 0.0, Cuboid::new(Vec3::new(1.4, 0.8, 0.2))?.into())?;
-    world.body_mut(slab)?.set_position(Vec3::new(0.0, 0.0, 0.15))?;
+    let slab = add(world, 0.0, Cuboid::new(Vec3::new(1.2, 0.7, 0.16))?.into())?;
+    world.body_mut(slab)?.set_position(Vec3::new(0.0, 0.0, 0.17))?;
     world.body_mut(slab)?.set_kinematic();
     Ok([ball, slab])
 }
@@ -341,7 +341,7 @@ impl JointPicture {
             let body = world.body(key)?;
             let at = body.position()
                 + match (self.name, text) {
-                    ("plane2d" | "contact", "2") => Vec3::new(0.52, -0.3, 0.1),
+                    ("plane2d" | "contact", "2") => Vec3::new(0.45, -0.25, 0.08),
                     ("plane2d", _) => body.vector_to_world(Vec3::new(-0.25, 0.0, 0.08)),
                     ("contact", _) => Vec3::new(-0.12, -0.2, 0.1),
                     ("hinge2", "1") => Vec3::new(-0.4, 0.0, 0.08),
@@ -365,7 +365,8 @@ impl JointPicture {
                 overlays = Overlays { contacts: true, forces: true, ..Overlays::default() };
                 if let Some(contact) = world.contacts().first() {
                     let point = contact.point;
-                    beside(point.position + point.normal * SCALE.length, anchors[0], Side::Above);
+                    let left = Vec3::new(-0.19, 0.0, 0.03);
+                    beside(point.position + point.normal * SCALE.length + left, anchors[0], Side::On);
                     beside(point.position + contact.force * SCALE.per_newton, axes[0], Side::Below);
                 }
             }
