@@ -187,8 +187,7 @@ pub fn render(args: &RenderArgs) -> Result<(), Failure> {
             progress.set_position((named.world.time() * 1e3) as u64);
         }
         named.world.sync_geoms();
-        let picture =
-            photographer.lettered_picture(&named, direction.as_ref()).map_err(Failure::output)?;
+        let picture = photographer.lettered_picture(&named, direction.as_ref()).map_err(Failure::output)?;
         film.add(&picture).map_err(Failure::output)?;
     }
     film.finish().map_err(Failure::output)?;

@@ -10,12 +10,14 @@ mod page;
 mod small_png;
 
 use crate::demo;
+use crate::failure::Failure;
+use crate::lettering::Lettering;
 use crate::overlay::{self, Scale};
 use crate::painter::Painter;
 use crate::render_command::staged;
 use ferrode_demos::{ALL, Demo};
 use ferrode_math::Vec3;
-use ferrode_render::{Camera, Canvas, Ground, Picture, Quality, Scene, wgpu};
+use ferrode_render::{Camera, Canvas, Ground, Picture, Quality, Scene};
 use joints::JointPicture;
 use std::path::Path;
 
@@ -28,7 +30,11 @@ pub const SIZE: [u32; 2] = [480, 300];
 ///
 /// # Errors
 /// There is no driver, the engine refuses a scene, or a file cannot be written.
-pub fn draw_all(docs: &Path) -> Result<(), String> {
+pub fn draw_all(docs: &Path) -> Result<(), Failure> {
+    write_all(docs).map_err(Failure::output)
+}
+
+fn write_all(docs: &Path) -> Result<(), String> {
     let folder = docs.join("img/gallery");
     make_folder(&folder)?;
     let mut studio = Studio::open(SIZE)?;
@@ -60,6 +66,7 @@ fn save(path: &Path, bytes: &[u8]) -> Result<(), String> {
 pub struct Studio {
     canvas: Canvas,
     scene: Scene,
+    letters: Option<Lettering>,
 }
 
 impl Studio {
@@ -69,7 +76,7 @@ impl Studio {
     /// As [`Canvas::new`].
     pub fn open(size: [u32; 2]) -> Result<Self, String> {
         let canvas = Canvas::new(size[0], size[1], Quality::fine()).map_err(|error| error.to_string())?;
-        Ok(Self { canvas, scene: Scene::new() })
+        Ok(Self { canvas, scene: Scene::new(), letters: None })
     }
 
     /// A demo at its picture's moment, by its own camera.
@@ -88,6 +95,8 @@ impl Studio {
         for _ in 0..(demo.picture_at / named.step_size()).round() as u64 {
             direction.step(&mut named).map_err(|error| told(&error))?;
         }
+        // Some steppers move bodies alone.
+        named.world.sync_geoms();
         let camera = Camera::look_at(demo.camera.eye, demo.camera.target);
         self.scene.clear(camera.target);
         direction.draw(&named.world, &mut painter, &mut self.scene);
@@ -115,8 +124,10 @@ impl Studio {
         overlay::draw(&set.world, &set.overlays, &joints::SCALE, &mut self.scene);
         joint.draw_more(&set, &mut self.scene);
         let (scene, size) = (&self.scene, self.canvas.size());
+        let letters = self.letters.get_or_insert_with(|| Lettering::new(self.canvas.gpu(), Canvas::format()));
         let picture = self.canvas.draw_with(scene, &camera, |gpu, encoder, into| {
-            labels::draw(&set.labels, &camera, size, gpu, encoder, into, FORMAT);
+            let words = |ui: &mut egui::Ui| labels::paint(ui.painter(), &set.labels, &camera, size);
+            letters.draw(gpu, encoder, into, size, words);
         });
         picture.map_err(|error| told(&error))
     }
@@ -124,6 +135,3 @@ impl Studio {
 
 /// The ground under joints, m.
 const GROUND: f64 = -0.12;
-
-/// The canvas's format.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;

@@ -94,8 +94,10 @@ impl Playback {
 
     /// A demo to run.
     pub fn of_demo(named: NamedWorld, direction: Direction) -> Self {
-        let start = (named.clone(), Some(direction.clone()));
-        Self { start, direction: Some(direction), ..Self::new(Setup::default(), named) }
+        let mut playback = Self::new(Setup::default(), named);
+        playback.start.1 = Some(direction.clone());
+        playback.direction = Some(direction);
+        playback
     }
 
     /// A recording to show on a world.
