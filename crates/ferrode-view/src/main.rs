@@ -21,7 +21,10 @@ fn main() -> ExitCode {
         Task::View(args) => window::view(&args),
         Task::Gallery(docs) => gallery::draw_all(&docs),
         // A reader that has seen enough closes the pipe.
-        Task::List => Ok(std::io::stdout().write_all(ferrode_demos::list().as_bytes()).unwrap_or_default()),
+        Task::List => {
+            let _ = std::io::stdout().write_all(ferrode_demos::list().as_bytes());
+            Ok(())
+        }
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
