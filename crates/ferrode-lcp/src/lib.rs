@@ -11,6 +11,7 @@
 
 mod block_rows;
 pub mod cholesky;
+pub mod condensed;
 pub mod dantzig;
 pub mod dense;
 mod envelope;
@@ -23,6 +24,7 @@ pub mod residual;
 pub mod sor;
 pub mod sparse;
 
+pub use condensed::{CondensedReport, CondensedWorkspace, solve_condensed};
 pub use dantzig::{
     DantzigOptions, DantzigReport, DantzigStatus, DantzigWorkspace, solve_dantzig, solve_dantzig_with,
 };

@@ -22,8 +22,9 @@ mod sweep;
 
 use crate::error::{LcpError, check_len};
 use crate::kernel::sum4;
+use ferrode_math::simd::{Compute, compute_wide};
 use std::borrow::Borrow;
-use sweep::{PackedRow, Stretch, Sweep, find_stretches};
+use sweep::{Interleaving, PackedRow, Stretch, Sweep, find_stretches, interleave};
 
 /// Stands for "no body".
 pub const NO_BODY: u32 = u32::MAX;
@@ -175,6 +176,7 @@ pub struct SorWorkspace {
     order: Vec<u32>,
     /// The order before the first shuffle, as stretches of rows on the same bodies.
     stretches: Vec<Stretch>,
+    interleaving: Interleaving,
     /// Scratch: the rows with a friction index.
     friction: Vec<u32>,
     /// The forces, and the one that is always 1.
@@ -243,15 +245,33 @@ pub fn solve_sor_rows(
         return Err(error);
     }
     let (iterations, exit) = match (params.dynamic, params.inf_times_zero) {
-        (None, InfTimesZero::Unbounded) => workspace.run::<false, false>(params, random),
-        (None, InfTimesZero::Zero) => workspace.run::<true, false>(params, random),
-        (Some(_), InfTimesZero::Unbounded) => workspace.run::<false, true>(params, random),
-        (Some(_), InfTimesZero::Zero) => workspace.run::<true, true>(params, random),
+        (None, InfTimesZero::Unbounded) => compute_wide(Run::<_, false, false> { workspace, params, random }),
+        (None, InfTimesZero::Zero) => compute_wide(Run::<_, true, false> { workspace, params, random }),
+        (Some(_), InfTimesZero::Unbounded) => {
+            compute_wide(Run::<_, false, true> { workspace, params, random })
+        }
+        (Some(_), InfTimesZero::Zero) => compute_wide(Run::<_, true, true> { workspace, params, random }),
     };
     // 0 times a number is 0 unless the number is infinite or none.
     let forces: f64 = workspace.lambda.iter().map(|v| 0.0 * v).sum();
     let accelerations: f64 = workspace.acceleration.iter().flat_map(|a| a.0).map(|v| 0.0 * v).sum();
     Ok(SorReport { iterations, exit, finite: !(forces + accelerations).is_nan() })
+}
+
+/// The iterations, compiled for the machine. `ZERO`: infinity times zero is zero; `DYNAMIC`: watch the changes.
+struct Run<'a, R, const ZERO: bool, const DYNAMIC: bool> {
+    workspace: &'a mut SorWorkspace,
+    params: &'a SorParams,
+    random: &'a mut R,
+}
+
+impl<R: FnMut(u32) -> u32, const ZERO: bool, const DYNAMIC: bool> Compute for Run<'_, R, ZERO, DYNAMIC> {
+    type Out = (u32, SorExit);
+
+    #[inline(always)]
+    fn run(self) -> (u32, SorExit) {
+        self.workspace.run::<ZERO, DYNAMIC>(self.params, self.random)
+    }
 }
 
 fn check_params(params: &SorParams) -> Result<(), LcpError> {
@@ -389,10 +409,13 @@ impl SorWorkspace {
         check_len("rows", count, m)?;
         self.order.extend_from_slice(&self.friction);
         find_stretches(&self.order, &self.packed, &mut self.stretches);
+        let Self { order, packed, stretches, interleaving, .. } = self;
+        interleave(order, &packed[..m], bodies.len(), stretches, interleaving);
         Ok(())
     }
 
     /// Does the iterations. `ZERO`: infinity times zero is zero; `DYNAMIC`: watch the changes.
+    #[inline(always)]
     fn run<const ZERO: bool, const DYNAMIC: bool>(
         &mut self,
         params: &SorParams,
@@ -439,6 +462,7 @@ impl SorWorkspace {
     }
 
     /// Visits every row once: in stretches of rows on the same bodies until the first shuffle, one by one after.
+    #[inline(always)]
     fn sweep<const ZERO: bool, const DYNAMIC: bool>(&mut self, shuffled: bool) {
         let Self { packed, order, stretches, lambda, acceleration, weight, change, .. } = self;
         let mut sweep = Sweep::<ZERO, DYNAMIC> { packed, lambda, acceleration, weight, change };
@@ -454,6 +478,7 @@ impl SorWorkspace {
     }
 
     /// Whether all bodies changed less than `limit` in the last iteration. Sets the sums back to zero.
+    #[inline(always)]
     fn is_calm(&mut self, limit: f64) -> bool {
         let calm = limit > 0.0 && self.change.iter().all(|c| c[0] < limit && -c[1] < limit);
         self.change.fill([0.0; 2]);

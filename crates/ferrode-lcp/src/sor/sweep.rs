@@ -69,6 +69,66 @@ pub(super) fn find_stretches(order: &[u32], packed: &[PackedRow], stretches: &mu
     }
 }
 
+/// Scratch of [`interleave`].
+#[derive(Clone, Debug, Default)]
+pub(super) struct Interleaving {
+    /// The level that the next stretch on each body is on at least.
+    of_body: Vec<u32>,
+    level: Vec<u32>,
+    /// Where the stretches of each level go.
+    start: Vec<u32>,
+    before: Vec<Stretch>,
+}
+
+/// Puts stretches that don't wait for each other side by side: those that share a body keep their order, so that the sweep computes the same bits,
+/// and the processor works on several at a time. Friction rows come after their normal rows on the same bodies; if one hangs on
+/// other bodies' rows, all stay as they are.
+pub(super) fn interleave(
+    order: &[u32],
+    packed: &[PackedRow],
+    bodies: usize,
+    stretches: &mut Vec<Stretch>,
+    work: &mut Interleaving,
+) {
+    let Interleaving { of_body, level, start, before } = work;
+    let elsewhere = |row: &PackedRow| packed.get(row.scale as usize).is_some_and(|f| f.body != row.body);
+    if packed.iter().any(elsewhere) {
+        return;
+    }
+    of_body.clear();
+    of_body.resize(bodies + 1, 0);
+    level.clear();
+    start.clear();
+    start.push(0);
+    for stretch in stretches.iter() {
+        let Some(row) = order.get(stretch.start as usize).map(|row| &packed[*row as usize]) else { return };
+        let [first, second] = row.body.map(|b| b as usize);
+        let mut here = of_body[first];
+        if let Some(other) = of_body.get(second) {
+            here = here.max(*other);
+        }
+        of_body[first] = here + 1;
+        if let Some(other) = of_body.get_mut(second) {
+            *other = here + 1;
+        }
+        level.push(here);
+        if start.len() <= here as usize + 1 {
+            start.push(0);
+        }
+        start[here as usize + 1] += 1;
+    }
+    for i in 1..start.len() {
+        start[i] += start[i - 1];
+    }
+    before.clear();
+    before.extend_from_slice(stretches);
+    for (stretch, level) in before.iter().zip(level.iter()) {
+        let to = &mut start[*level as usize];
+        stretches[*to as usize] = *stretch;
+        *to += 1;
+    }
+}
+
 /// Two partial dot products of six numbers, even and odd places.
 #[inline(always)]
 fn dot6(j: &[f64; 6], a: &[f64]) -> [f64; 2] {

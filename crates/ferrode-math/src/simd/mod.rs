@@ -52,11 +52,13 @@ mod level;
 mod neon;
 mod portable;
 mod record;
+mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub use level::{Level, dispatch, dispatch_at};
 pub use record::{NO_RECORD, Record};
+pub use wide::{Compute, compute_wide};
 
 use crate::Scalar;
 use core::cell::Cell;

@@ -4,7 +4,7 @@
 //! the instructions on the machine. That is what makes the intrinsics below sound.
 
 use super::portable::{Block4, Block8, Block16};
-use super::{Kernel, Lanes, Mask, Record};
+use super::{Compute, Kernel, Lanes, Mask, Record};
 use crate::Scalar;
 use core::arch::x86_64::*;
 use core::cell::Cell;
@@ -17,6 +17,15 @@ use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Su
 #[target_feature(enable = "avx,avx2")]
 pub(super) unsafe fn run_avx2<K: Kernel>(kernel: K) -> K::Out {
     kernel.run::<F32x8>()
+}
+
+/// Runs a computation without lanes.
+///
+/// # Safety
+/// The machine has AVX2.
+#[target_feature(enable = "avx,avx2")]
+pub(super) unsafe fn compute_avx2<C: Compute>(computation: C) -> C::Out {
+    computation.run()
 }
 
 /// Runs a kernel with sixteen lanes.

@@ -1,14 +1,19 @@
 //! Dantzig's pivoting on the dense matrix: ODE's way, and the reference.
+//!
+//! Islands of usual size are solved on their rows with bounds alone (`ferrode_lcp::condensed`), the same pivoting in less time.
+//! What that cannot solve to rounding, and larger ones, are solved with all rows.
 
-use super::{RowSystem, SpansByBody, jacobian};
+use super::{RowSystem, SpansByBody};
 use crate::report::{DirectMethod, IslandSolve};
 use crate::solve::Solved;
 use crate::step::{Island, SolverBody};
+use ferrode_lcp::condensed::{CondensedWorkspace, solve_condensed};
 use ferrode_lcp::dantzig::{DantzigStatus, DantzigWorkspace, solve_dantzig};
 use ferrode_lcp::dense::pad;
 use ferrode_lcp::problem::BoxedLcp;
 use ferrode_lcp::residual::row_residual;
 use ferrode_math::Vec3;
+use ferrode_math::simd::{Compute, compute_wide};
 
 /// Memory of the method.
 #[derive(Clone, Debug, Default)]
@@ -18,10 +23,16 @@ pub(super) struct Workspace {
     /// For each row the first column of the matrix that is used; what lies left of it holds old numbers.
     first: Vec<u32>,
     /// M⁻¹ Jᵀ, transposed: for each row, linear and angular part for both bodies.
-    inv_mass_j: Vec<[Vec3; 4]>,
+    inv_mass_j: Vec<[[f64; 6]; 2]>,
+    /// J by columns: all rows' entries of a column next to each other, those of the first body first.
+    columns: Vec<f64>,
     w: Vec<f64>,
     dantzig: DantzigWorkspace,
+    condensed: CondensedWorkspace,
 }
+
+/// The most rows that are condensed: the tableau must stay small.
+const MOST_CONDENSED_ROWS: usize = 200;
 
 /// Finds the forces of an island's rows.
 pub(super) fn solve(
@@ -49,6 +60,14 @@ pub(super) fn solve(
         w: &mut work.w,
     };
     report.method = DirectMethod::Dantzig;
+    if m <= MOST_CONDENSED_ROWS
+        && let Ok(Some(answer)) = solve_condensed(&mut problem, &mut work.condensed)
+    {
+        report.factorisations = 1;
+        report.residual = answer.residual;
+        report.largest_force = answer.largest;
+        return Solved::Completely;
+    }
     match solve_dantzig(&mut problem, &mut work.dantzig) {
         Ok(answer) => {
             report.factorisations = 1;
@@ -65,15 +84,22 @@ pub(super) fn solve(
 }
 
 impl Workspace {
-    /// M⁻¹ Jᵀ of all rows.
+    /// J and M⁻¹ Jᵀ of all rows.
     fn load_rows(&mut self, island: &Island) {
+        let m = island.rows.len();
         self.inv_mass_j.clear();
+        self.columns.resize(12 * m, 0.0);
         for span in &island.spans {
             let [a, b] = span.bodies.map(|place| island.bodies.get(place as usize));
             for row in &island.rows[span.first..span.first + span.count.rows] {
                 let [l1, a1] = inv_mass_times(a, row.linear1, row.angular1);
                 let [l2, a2] = inv_mass_times(b, row.linear2, row.angular2);
-                self.inv_mass_j.push([l1, a1, l2, a2]);
+                let at = self.inv_mass_j.len();
+                self.inv_mass_j.push([six(l1, a1), six(l2, a2)]);
+                let j = [six(row.linear1, row.angular1), six(row.linear2, row.angular2)];
+                for (c, j) in j.as_flattened().iter().enumerate() {
+                    self.columns[c * m + at] = *j;
+                }
             }
         }
     }
@@ -87,28 +113,7 @@ impl Workspace {
             self.matrix = vec![0.0; m * stride];
         }
         self.clear_band(island, spans, stride);
-        for body in 0..island.bodies.len() {
-            if island.bodies[body].inv_mass == 0.0 {
-                continue;
-            }
-            let at_body = &spans.at_body[spans.starts[body]..spans.starts[body + 1]];
-            for (i, (low_span, low_side)) in at_body.iter().enumerate() {
-                let low = &island.spans[*low_span as usize];
-                for (high_span, high_side) in &at_body[..=i] {
-                    let high = &island.spans[*high_span as usize];
-                    for r in low.first..low.first + low.count.rows {
-                        let side = 2 * *low_side as usize;
-                        let (linear, angular) = (self.inv_mass_j[r][side], self.inv_mass_j[r][side + 1]);
-                        let end = (high.first + high.count.rows).min(r + 1);
-                        let out = &mut self.matrix[r * stride + high.first..r * stride + end];
-                        for (out, row) in out.iter_mut().zip(&island.rows[high.first..end]) {
-                            let (l, a) = jacobian(row, *high_side);
-                            *out += linear.dot(l) + angular.dot(a);
-                        }
-                    }
-                }
-            }
-        }
+        compute_wide(Products { work: self, island, spans });
         for (r, sigma) in system.sigma.iter().enumerate() {
             self.matrix[r * stride + r] += sigma;
         }
@@ -159,6 +164,76 @@ impl Workspace {
                 if x[r].abs() > report.largest_force { x[r].abs() } else { report.largest_force };
         }
     }
+}
+
+/// Adds J M⁻¹ Jᵀ up, body by body, compiled for the machine.
+struct Products<'a> {
+    work: &'a mut Workspace,
+    island: &'a Island,
+    spans: &'a SpansByBody,
+}
+
+impl Compute for Products<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { work: Workspace { matrix, inv_mass_j, columns, .. }, island, spans } = self;
+        let m = inv_mass_j.len();
+        let stride = pad(m);
+        for (body, ends) in island.bodies.iter().zip(spans.starts.windows(2)) {
+            if body.inv_mass == 0.0 {
+                continue;
+            }
+            let at_body = &spans.at_body[ends[0]..ends[1]];
+            let mut runs = at_body;
+            // Spans whose rows follow each other, on the same side, are one run of columns.
+            while let Some((span, side)) = runs.first() {
+                let first = island.spans[*span as usize].first;
+                let mut end = first;
+                let here = runs.iter().take_while(|(span, other)| {
+                    let span = &island.spans[*span as usize];
+                    let follows = span.first == end && other == side;
+                    if follows {
+                        end += span.count.rows;
+                    }
+                    follows
+                });
+                let count = here.count();
+                let columns = &columns[6 * *side as usize * m..][..6 * m];
+                // Within the run up to the diagonal, below it all of the run.
+                for r in first..end {
+                    let n = r + 1 - first;
+                    let out = &mut matrix[r * stride + first..][..n];
+                    add_products(out, &inv_mass_j[r][*side as usize], columns, first);
+                }
+                for (low, low_side) in &at_body[at_body.len() - runs.len() + count..] {
+                    let low = &island.spans[*low as usize];
+                    for r in low.first..low.first + low.count.rows {
+                        let out = &mut matrix[r * stride + first..][..end - first];
+                        add_products(out, &inv_mass_j[r][*low_side as usize], columns, first);
+                    }
+                }
+                runs = &runs[count..];
+            }
+        }
+    }
+}
+
+/// Adds to `out` the products of `v` with as many rows from `first` on, of which the columns come one after the other.
+#[inline(always)]
+fn add_products(out: &mut [f64], v: &[f64; 6], columns: &[f64], first: usize) {
+    let (m, n) = (columns.len() / 6, out.len());
+    let (c0, c1, c2) = (&columns[first..][..n], &columns[m + first..][..n], &columns[2 * m + first..][..n]);
+    let (c3, c4, c5) =
+        (&columns[3 * m + first..][..n], &columns[4 * m + first..][..n], &columns[5 * m + first..][..n]);
+    for i in 0..n {
+        out[i] += (v[0] * c0[i] + v[1] * c1[i] + v[2] * c2[i]) + (v[3] * c3[i] + v[4] * c4[i] + v[5] * c5[i]);
+    }
+}
+
+fn six(l: Vec3, a: Vec3) -> [f64; 6] {
+    [l.x, l.y, l.z, a.x, a.y, a.z]
 }
 
 fn inv_mass_times(body: Option<&SolverBody>, linear: Vec3, angular: Vec3) -> [Vec3; 2] {
