@@ -123,7 +123,7 @@ impl<T> Default for Handle<T> {
 }
 
 /// Islands with fewer rows are solved by Dantzig's method.
-const DENSE_ROWS: usize = 200;
+const DENSE_ROWS: usize = 100;
 
 impl WorldRecord {
     /// A record for a new world. The program's memory handler may be called.

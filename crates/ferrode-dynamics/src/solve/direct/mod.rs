@@ -35,8 +35,8 @@ pub enum FrictionLaw {
 pub struct DirectSettings {
     /// What bounds friction.
     pub friction: FrictionLaw,
-    /// Islands with fewer rows are solved by Dantzig's method on the dense matrix, as in ODE; 30 by default. `usize::MAX` solves all
-    /// islands so.
+    /// Islands with fewer rows are solved by Dantzig's method on the dense matrix, as in ODE; 30 by default. Jointed figures of up to 160
+    /// rows are too, for which it takes less time, unless this is 0. `usize::MAX` solves all islands so.
     pub dense_rows: usize,
     /// The most factorisations that block pivoting may take for one problem, 200 by default. Past that an island of up to
     /// `most_dense_rows` rows goes to Dantzig's method.
@@ -148,7 +148,8 @@ fn solve_boxed(
     work: &mut Workspace,
     report: &mut IslandSolve,
 ) -> Solved {
-    let dense = island.rows.len() < settings.dense_rows;
+    let dense = island.rows.len() < settings.dense_rows
+        || (settings.dense_rows > 0 && work.system.is_small_figure(island.rows.len()));
     if dense {
         let solved = dense::solve(island, &work.system, &work.spans, &mut work.dense, report);
         if solved == Solved::Completely {
@@ -202,7 +203,24 @@ fn solve_cone(
     Solved::Partly
 }
 
+/// The most rows of a small figure, all and those without bounds.
+const MOST_FIGURE_ROWS: usize = 160;
+const MOST_HELD_ROWS: usize = 60;
+
 impl RowSystem {
+    /// Whether the rows are those of a jointed figure, such as a person on the ground, and few enough for the dense method. Measured: the
+    /// sparse one is ahead where contacts are many to each row without bounds, and on long chains.
+    fn is_small_figure(&self, rows: usize) -> bool {
+        if rows > MOST_FIGURE_ROWS {
+            return false;
+        }
+        let bounds = self.lo.iter().zip(&self.hi).zip(&self.findex);
+        let held =
+            bounds.filter(|((lo, hi), f)| **f < 0 && **lo == f64::NEG_INFINITY && **hi == f64::INFINITY);
+        let held = held.count();
+        held <= MOST_HELD_ROWS && rows - held <= 3 * held
+    }
+
     fn load(&mut self, island: &Island, fps: f64, free: &[FreeMotion]) {
         self.rhs.clear();
         self.sigma.clear();
