@@ -14,12 +14,14 @@
 //! final set, with iterative refinement in the whole system. It depends on the set alone. If the answer fails the test of its natural residual, the
 //! caller has to turn to [`crate::dantzig`].
 
+mod blocks;
 mod tableau;
 
 use crate::error::LcpError;
-use crate::kernel::{self, dot, sum4};
+use crate::kernel::{self, dot};
 use crate::problem::BoxedLcp;
 use crate::residual::row_residual;
+use blocks::{dot_from, sub_scaled, sub_scaled_4};
 use ferrode_math::simd::{Compute, compute_wide};
 use tableau::{Place, Tableau};
 
@@ -27,6 +29,8 @@ use tableau::{Place, Tableau};
 const GOOD: f64 = 1e-12;
 /// Refinement ends when the residuals are below this.
 const FINE: f64 = 1e-13;
+/// A pivot below this part of its diagonal is rounding: the row is redundant, and nothing in it tells its share of the load.
+const SINGULAR: f64 = 1e-13;
 /// So many corrections are made at most.
 const MOST_CORRECTIONS: usize = 3;
 /// So often wrong states are corrected at most.
@@ -207,12 +211,12 @@ impl CondensedWorkspace {
         }
     }
 
-    /// Eliminates the first `u` rows, four at a time: from the right-hand side and from what is left of the matrix. `None` if a pivot is
-    /// not positive.
+    /// Eliminates the first `u` rows, four at a time: from the right-hand side and from what is left of the matrix. `None` if a pivot
+    /// vanishes.
     #[inline(always)]
     fn eliminate(&mut self, n: usize, u: usize) -> Option<()> {
         let width = width(n);
-        let Self { m, d, .. } = self;
+        let Self { m, d, diagonal, .. } = self;
         d.clear();
         for start in (0..u).step_by(4) {
             let end = u.min(start + 4);
@@ -220,7 +224,7 @@ impl CondensedWorkspace {
                 let (above, below) = m.split_at_mut((j + 1) * width);
                 let row = &above[j * width..];
                 let pivot = row[j];
-                if pivot.is_nan() || pivot <= 0.0 {
+                if pivot.is_nan() || pivot <= SINGULAR * diagonal[j] {
                     return None;
                 }
                 let inverse = 1.0 / pivot;
@@ -271,11 +275,11 @@ impl CondensedWorkspace {
         Some(())
     }
 
-    /// Solves from scratch for the rows that are free, with the others at their bounds. `None` if a pivot is not positive.
+    /// Solves from scratch for the rows that are free, with the others at their bounds. `None` if a pivot vanishes.
     #[inline(always)]
     fn solve_set(&mut self, n: usize, u: usize) -> Option<()> {
         let width = width(n);
-        let Self { tableau, free, triangle, pivots, y, x, m, d, .. } = self;
+        let Self { tableau, free, triangle, pivots, y, x, m, d, diagonal, .. } = self;
         free.clear();
         for (at, place) in tableau.rows.iter().enumerate() {
             if place.is_free() {
@@ -315,7 +319,7 @@ impl CondensedWorkspace {
                 pivot -= *l * scaled;
                 *l = scaled;
             }
-            if pivot.is_nan() || pivot <= 0.0 {
+            if pivot.is_nan() || pivot <= SINGULAR * diagonal[at] {
                 return None;
             }
             pivots.push(1.0 / pivot);
@@ -472,55 +476,4 @@ fn width(n: usize) -> usize {
 fn refill(v: &mut Vec<f64>, n: usize, value: f64) {
     v.clear();
     v.resize(n, value);
-}
-
-/// The blocks of four of a slice from place `from` on, and what of it lies before them.
-#[inline(always)]
-fn blocks(a: &[f64], from: usize) -> (&[f64], &[[f64; 4]]) {
-    let aligned = from.next_multiple_of(4).min(a.len());
-    (&a[from..aligned], a[aligned..].as_chunks().0)
-}
-
-/// `y -= s a` from place `from` on; both are whole blocks of four.
-#[inline(always)]
-fn sub_scaled(y: &mut [f64], s: f64, a: &[f64], from: usize) {
-    let aligned = from.next_multiple_of(4).min(y.len());
-    let (y_head, y_rest) = y[from..].split_at_mut(aligned - from);
-    let (head, rest) = blocks(a, from);
-    for (y, a) in y_head.iter_mut().zip(head) {
-        *y -= s * a;
-    }
-    for (y, a) in y_rest.as_chunks_mut::<4>().0.iter_mut().zip(rest) {
-        // All read before any is written: one load, one store.
-        *y = [y[0] - s * a[0], y[1] - s * a[1], y[2] - s * a[2], y[3] - s * a[3]];
-    }
-}
-
-/// Four calls of [`sub_scaled`] to the bit, from a place that begins a block, but `y` goes through memory once.
-#[inline(always)]
-fn sub_scaled_4(y: &mut [f64], s: [f64; 4], a: [&[f64]; 4], from: usize) {
-    let y = y[from..].as_chunks_mut::<4>().0;
-    let (a0, a1) = (a[0][from..].as_chunks::<4>().0, a[1][from..].as_chunks::<4>().0);
-    let (a2, a3) = (a[2][from..].as_chunks::<4>().0, a[3][from..].as_chunks::<4>().0);
-    for ((((y, a0), a1), a2), a3) in y.iter_mut().zip(a0).zip(a1).zip(a2).zip(a3) {
-        let l = |l: usize| (((y[l] - s[0] * a0[l]) - s[1] * a1[l]) - s[2] * a2[l]) - s[3] * a3[l];
-        *y = [l(0), l(1), l(2), l(3)];
-    }
-}
-
-/// The dot product from place `from` on; both are whole blocks of four.
-#[inline(always)]
-fn dot_from(a: &[f64], b: &[f64], from: usize) -> f64 {
-    let ((a_head, a_rest), (b_head, b_rest)) = (blocks(a, from), blocks(b, from));
-    let mut head = 0.0;
-    for (a, b) in a_head.iter().zip(b_head) {
-        head += a * b;
-    }
-    let mut s = [0.0; 4];
-    for (a, b) in a_rest.iter().zip(b_rest) {
-        for l in 0..4 {
-            s[l] += a[l] * b[l];
-        }
-    }
-    head + sum4(s)
 }

@@ -87,7 +87,7 @@ pub(super) fn interleave(
     order: &[u32],
     packed: &[PackedRow],
     bodies: usize,
-    stretches: &mut Vec<Stretch>,
+    stretches: &mut [Stretch],
     work: &mut Interleaving,
 ) {
     let Interleaving { of_body, level, start, before } = work;
