@@ -45,10 +45,14 @@ pub fn labels(
         }
     };
     let scene = &named.scene;
+    let mut links_of = vec![0_usize; scene.models.len()];
+    for link in &scene.links {
+        links_of[link.model.0] += 1;
+    }
     for (index, link) in scene.links.iter().enumerate() {
         let body = named.link_body(LinkId(index)).and_then(|key| named.world.body(key).ok());
         let Some(body) = body else { continue };
-        let alone = scene.links.iter().filter(|other| other.model == link.model).count() == 1;
+        let alone = links_of[link.model.0] == 1;
         let parts: Vec<&str> = link.name.rsplit("::").collect();
         let short = if alone { parts.get(1) } else { None }.or(parts.first());
         add(short.copied().unwrap_or(&link.name), body.position());
