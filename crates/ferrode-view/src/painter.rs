@@ -31,7 +31,8 @@ pub struct Painter {
     /// lower); `None` for none.
     pub floor: Option<f64>,
     colors: BTreeMap<BodyKey, Color>,
-    meshes: BTreeMap<GeomKey, Arc<Mesh>>,
+    /// By geom and part of a compound.
+    meshes: BTreeMap<(GeomKey, usize), Arc<Mesh>>,
     islands: BTreeMap<BodyKey, usize>,
 }
 
@@ -105,7 +106,7 @@ impl Painter {
             let Ok(geom) = world.geom(info.key) else { continue };
             let color = self.color(world, info.body);
             grounded |= matches!(geom.shape(), Shape::Plane(_) | Shape::Heightfield(_));
-            self.shape(Some(info.key), geom.shape(), geom.pose(), Paint::from(color), scene);
+            self.shape(Some((info.key, 0)), geom.shape(), geom.pose(), Paint::from(color), scene);
         }
         if let (Some(height), false) = (self.floor, grounded) {
             // It must not hide what comes down to it.
@@ -115,10 +116,10 @@ impl Painter {
         }
     }
 
-    /// Adds a shape. Meshes are remembered for the geom that they are of.
+    /// Adds a shape. Meshes are remembered for the geom, and the part of its compound, that they are of.
     pub(crate) fn shape(
         &mut self,
-        key: Option<GeomKey>,
+        key: Option<(GeomKey, usize)>,
         shape: &Shape,
         pose: &Pose,
         paint: Paint,
@@ -141,6 +142,11 @@ impl Painter {
                 let end = pose.transform_point(Vec3::new(0.0, 0.0, s.length()));
                 scene.line(pose.position, end, 2.0, paint.color, ferrode_render::Layer::World);
             }
+            Shape::Compound(compound) => {
+                for (i, (part, at)) in compound.parts().enumerate() {
+                    self.shape(key.map(|(geom, _)| (geom, i)), part, &(*pose * *at), paint, scene);
+                }
+            }
             _ => {
                 let Some(mesh) = self.mesh(key, shape) else { return };
                 scene.mesh(pose, &mesh, Vec3::splat(1.0), paint);
@@ -148,7 +154,7 @@ impl Painter {
         }
     }
 
-    fn mesh(&mut self, key: Option<GeomKey>, shape: &Shape) -> Option<Arc<Mesh>> {
+    fn mesh(&mut self, key: Option<(GeomKey, usize)>, shape: &Shape) -> Option<Arc<Mesh>> {
         if let Some(mesh) = key.and_then(|key| self.meshes.get(&key)) {
             return Some(Arc::clone(mesh));
         }
