@@ -6,8 +6,8 @@ use common::canvas;
 use ferrode::dynamics::{JointData, JointMut};
 use ferrode::prelude::*;
 use ferrode::{
-    AMotor, AxisFrame, Cone, Convex, DHinge, Ellipsoid, Heightfield, Hinge, Hinge2, LMotor, PR, PU, Piston,
-    Slider, Transmission, TriMesh, Universal,
+    AMotor, AxisFrame, Compound, Cone, Convex, DHinge, Ellipsoid, Heightfield, Hinge, Hinge2, LMotor, PR, PU,
+    Piston, Slider, Transmission, TriMesh, Universal,
 };
 use ferrode_view::joint_marks::{JointMarks, joint_marks};
 use ferrode_view::overlay::{self, ArrowKind, Overlays, Scale};
@@ -31,11 +31,17 @@ fn all_shapes() -> Result<World, Error> {
         Ellipsoid::new(Vec3::new(0.5, 0.3, 0.4))?.into(),
         Convex::from_points(&corners)?.into(),
         TriMesh::new(corners.to_vec(), faces)?.into(),
+        Compound::new([
+            (Cuboid::new(Vec3::new(0.9, 0.2, 0.2))?.into(), Pose::IDENTITY),
+            (Convex::from_points(&corners)?.into(), Pose::from_position(Vec3::new(0.2, 0.1, -0.2))),
+            (Sphere::new(0.2)?.into(), Pose::from_position(Vec3::new(-0.5, 0.0, 0.1))),
+        ])?
+        .into(),
     ];
     let axis = Vec3::new(0.3, 0.5, 0.8).normalized_or(Vec3::Z);
     for (n, shape) in shapes.into_iter().enumerate() {
-        let (column, row) = ((n % 4) as f64, (n / 4) as f64);
-        let at = Vec3::new(1.3 * column - 2.0, 1.4 * row - 0.7, 0.8);
+        let (column, row) = ((n % 5) as f64, (n / 5) as f64);
+        let at = Vec3::new(1.3 * column - 2.6, 1.4 * row - 0.7, 0.8);
         let turn = Quat::from_axis_angle(axis, 0.5 + n as f64);
         world.add_body(BodyBuilder::new().at(at).rotated(turn).with_shape(shape, 500.0))?;
     }
