@@ -174,7 +174,10 @@ fn recording(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     match crate::record::Format::of(&path) {
         Some(_) => Ok(path),
-        None => Err("the name must end in .csv or .jsonl, which says how to write it".to_owned()),
+        None if crate::record::is_rerun(&path) => {
+            Err("this ferrode cannot write .rrd; built with `--features rerun`, it can".to_owned())
+        }
+        None => Err("the name must end in .csv, .jsonl or .rrd, which says how to write it".to_owned()),
     }
 }
 
@@ -313,7 +316,7 @@ pub fn command() -> Command {
         )
         .arg(
             Arg::new("record").long("record").value_name("OUT").value_parser(recording).help(
-                "Write places and velocities of links and joints to OUT.csv,\nor to OUT.jsonl (a JSON object a line)",
+                "Write places and velocities of links and joints to OUT.csv,\nor to OUT.jsonl (a JSON object a line), or for Rerun to OUT.rrd\n(if built with the feature rerun)",
             ),
         )
         .arg(

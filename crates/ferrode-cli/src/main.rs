@@ -11,6 +11,8 @@ mod hold;
 mod json;
 mod progress;
 mod record;
+#[cfg(feature = "rerun")]
+mod rrd;
 mod run;
 mod simulation;
 mod stats;

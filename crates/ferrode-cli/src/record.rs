@@ -13,6 +13,8 @@
 //!
 //! Links that cannot move are left out. CSV has the names in its first row (quoted where RFC 4180 asks for it); JSON lines
 //! have them in each object. A number that is not finite is `NaN`, `inf`, `-inf` in CSV and null in JSON.
+//!
+//! With the feature `rerun` a name that ends in `.rrd` asks for a recording for Rerun's viewer (`rrd`).
 
 use crate::exit::Failure;
 use crate::simulation::Simulation;
@@ -28,6 +30,14 @@ pub enum Format {
     Csv,
     /// A JSON object a line.
     JsonLines,
+    /// For Rerun's viewer.
+    #[cfg(feature = "rerun")]
+    Rerun,
+}
+
+/// Whether a file's name is that of a recording for Rerun.
+pub fn is_rerun(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("rrd"))
 }
 
 impl Format {
@@ -36,13 +46,62 @@ impl Format {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "csv" => Some(Self::Csv),
             "jsonl" => Some(Self::JsonLines),
+            #[cfg(feature = "rerun")]
+            "rrd" => Some(Self::Rerun),
             _ => None,
         }
     }
 }
 
 /// A recording under way.
-pub struct Recorder {
+pub enum Recorder {
+    /// Of rows.
+    Table(Table),
+    /// For Rerun.
+    #[cfg(feature = "rerun")]
+    Rerun(crate::rrd::Recording),
+}
+
+impl Recorder {
+    /// Starts a recording.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn create(path: &Path, simulation: &Simulation) -> Result<Self, Failure> {
+        match Format::of(path).unwrap_or(Format::Csv) {
+            #[cfg(feature = "rerun")]
+            Format::Rerun => Ok(Self::Rerun(crate::rrd::Recording::create(path, simulation)?)),
+            format => Ok(Self::Table(Table::create(path, format, simulation)?)),
+        }
+    }
+
+    /// Writes the present state.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn record(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+        match self {
+            Self::Table(table) => table.record(simulation),
+            #[cfg(feature = "rerun")]
+            Self::Rerun(recording) => recording.record(simulation),
+        }
+    }
+
+    /// Writes what is left.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn finish(self) -> Result<(), Failure> {
+        match self {
+            Self::Table(table) => table.finish(),
+            #[cfg(feature = "rerun")]
+            Self::Rerun(recording) => recording.finish(),
+        }
+    }
+}
+
+/// A recording of rows.
+pub struct Table {
     out: BufWriter<File>,
     path: PathBuf,
     format: Format,
@@ -52,12 +111,8 @@ pub struct Recorder {
     row: Vec<f64>,
 }
 
-impl Recorder {
-    /// Starts a recording.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn create(path: &Path, simulation: &Simulation) -> Result<Self, Failure> {
+impl Table {
+    fn create(path: &Path, format: Format, simulation: &Simulation) -> Result<Self, Failure> {
         let scene = simulation.scene();
         let mut columns = vec!["time[s]".to_owned()];
         let links: Vec<LinkId> =
@@ -97,7 +152,6 @@ impl Recorder {
         }
         columns.extend(["energy.kinetic[J]", "energy.potential[J]", "contacts"].map(str::to_owned));
         let file = File::create(path).map_err(|error| Failure::output(path.display(), &error))?;
-        let format = Format::of(path).unwrap_or(Format::Csv);
         let mut recorder = Self {
             out: BufWriter::new(file),
             path: path.to_owned(),
@@ -114,11 +168,7 @@ impl Recorder {
         Ok(recorder)
     }
 
-    /// Writes the present state.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn record(&mut self, simulation: &Simulation) -> Result<(), Failure> {
+    fn record(&mut self, simulation: &Simulation) -> Result<(), Failure> {
         let mut row = std::mem::take(&mut self.row);
         row.clear();
         let world = simulation.world();
@@ -137,23 +187,19 @@ impl Recorder {
         let energy = world.energy();
         row.extend([energy.kinetic, energy.potential, world.contacts().len() as f64]);
         let text = match self.format {
-            Format::Csv => row.iter().map(|value| csv_number(*value)).collect::<Vec<_>>().join(","),
             Format::JsonLines => {
                 let members = self.columns.iter().zip(&row).map(|(name, value)| {
                     format!("{}:{}", serde_json::Value::from(name.as_str()), serde_json::Value::from(*value))
                 });
                 format!("{{{}}}", members.collect::<Vec<_>>().join(","))
             }
+            _ => row.iter().map(|value| csv_number(*value)).collect::<Vec<_>>().join(","),
         };
         self.row = row;
         self.line(&text)
     }
 
-    /// Writes what is left.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn finish(mut self) -> Result<(), Failure> {
+    fn finish(mut self) -> Result<(), Failure> {
         self.out.flush().map_err(|error| Failure::output(self.path.display(), &error))
     }
 

@@ -117,6 +117,12 @@ impl Simulation {
         self.named.link_body(link).is_some()
     }
 
+    /// The body of a link, unless it cannot move.
+    #[cfg(feature = "rerun")]
+    pub fn link_body(&self, link: LinkId) -> Option<ferrode::prelude::BodyKey> {
+        self.named.link_body(link)
+    }
+
     /// The link frame in the world.
     pub fn link_pose(&self, link: LinkId) -> Pose {
         self.named.link_pose(link)

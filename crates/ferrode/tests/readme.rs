@@ -11,7 +11,8 @@ fn the_front_page_is_the_repositorys_readme() {
     };
     let mut lines: Vec<&str> = Vec::new();
     // A picture's relative path holds in the repository only.
-    for line in root.lines().filter(|line| !line.starts_with("![")) {
+    let picture = |line: &str| line.starts_with("![") || line.starts_with("[![");
+    for line in root.lines().filter(|line| !picture(line)) {
         if !(line.is_empty() && lines.last().is_some_and(|last| last.is_empty())) {
             lines.push(line);
         }

@@ -13,6 +13,7 @@ mod hull;
 mod plane;
 mod ray;
 mod sphere;
+mod surface;
 mod trimesh;
 
 pub use capsule::Capsule;
