@@ -50,6 +50,11 @@ impl WindowSurface {
         Ok(Self { gpu, surface, config, renderer })
     }
 
+    /// The quality that it draws with.
+    pub fn quality(&self) -> Quality {
+        self.renderer.quality()
+    }
+
     /// The driver.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu

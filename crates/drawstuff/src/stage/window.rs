@@ -135,7 +135,7 @@ impl WindowStage {
         let Some((_, surface)) = &self.hands.open else { return Ok(()) };
         let size = surface.size();
         if self.canvas.as_ref().is_none_or(|canvas| canvas.size() != size) {
-            let canvas = Canvas::on(surface.gpu().clone(), size[0], size[1], Quality::live());
+            let canvas = Canvas::on(surface.gpu().clone(), size[0], size[1], surface.quality());
             self.canvas = Some(canvas.map_err(Fault::circumstance)?);
         }
         let Some(canvas) = &mut self.canvas else { return Ok(()) };
