@@ -125,6 +125,9 @@ fn main() -> Result<(), Error> {
     assert!(((bob - PIVOT).length() - 1.5).abs() < 0.01, "the bob still hangs from its pivot");
     assert!(ball.x > 2.0, "the ball was knocked away");
     assert!((ball.z - 0.25).abs() < 1e-3, "the ball rolls on the ground");
-    assert_eq!(in_short()?, (bob, ball), "both ways make the same steps");
+    // The two spaces find contacts in different orders, and so sums round differently in the last digit.
+    let (short_bob, short_ball) = in_short()?;
+    let apart = (short_bob - bob).length().max((short_ball - ball).length());
+    assert!(apart < 1e-12, "both ways make the same steps: {apart}");
     Ok(())
 }
