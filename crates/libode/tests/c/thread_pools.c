@@ -1,6 +1,8 @@
 /* Threading implementations: steps of a world in a pool's threads and in the program's own, restarted in between. */
 #include "check.h"
 #include <pthread.h>
+#include <stdatomic.h>
+#include <unistd.h>
 
 static dThreadingImplementationID threads;
 static volatile int ready;
@@ -13,6 +15,15 @@ static int calls;
 static int count(void *context, dcallindex_t index, dCallReleaseeID self) {
     (void)context, (void)self;
     calls += 1 + (int)index;
+    return 1;
+}
+/* A call that lasts a second, or until the program no longer waits for it. */
+static atomic_int begun, waited, ended;
+static int last(void *context, dcallindex_t index, dCallReleaseeID self) {
+    (void)context, (void)index, (void)self;
+    begun = 1;
+    for (int i = 0; i < 100 && !waited; i++) usleep(10000);
+    ended = !waited;
     return 1;
 }
 static void post(void) {
@@ -48,10 +59,13 @@ int main(void) {
     dWorldSetStepThreadingImplementation(w, f, threads);
     for (int i = 0; i < 5; i++) dWorldStep(w, 0.01), dWorldQuickStep(w, 0.01);
     MOVES(dWorldSetStepThreadingImplementation, a);
+    f->post_call(threads, 0, 0, 0, 0, 0, last, 0, 0, "last");
+    while (!begun) ;
     dThreadingImplementationShutdownProcessing(threads);
     dThreadingThreadPoolWaitIdleState(pool);
+    waited = 1;
+    CHECKI(dThreadingThreadPoolWaitIdleState, ended);
     CHECKI(dThreadingImplementationShutdownProcessing, f->retrieve_thread_count(threads));
-    CHECKI(dThreadingThreadPoolWaitIdleState, f->retrieve_thread_count(threads));
     dThreadingImplementationCleanupForRestart(threads);
     pthread_t thread;
     pthread_create(&thread, 0, serve, 0);
