@@ -63,6 +63,7 @@ impl World {
                 if other != NIL && !islands.body_seen[other as usize] && !self.bodies.at(other).quarantined {
                     islands.body_seen[other as usize] = true;
                     self.bodies.at_mut(other).enabled = true;
+                    self.roll.call(other);
                     islands.stack.push(other);
                 }
             }

@@ -33,6 +33,7 @@ mod island;
 mod joint;
 mod mass;
 mod report;
+mod roll;
 mod rows;
 mod sleep;
 mod softness;

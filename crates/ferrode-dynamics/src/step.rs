@@ -2,7 +2,7 @@
 
 mod fast;
 
-use crate::body::Body;
+use crate::body::{Body, BodyKey};
 use crate::ends::{Ends, Frame, StepContext};
 use crate::foreign::MovedObserver;
 use crate::island::Islands;
@@ -236,6 +236,17 @@ impl World {
                 report.quarantined.push(self.body_key(index));
             }
             index = next;
+        }
+    }
+
+    /// The same, of bodies that may be awake.
+    pub(crate) fn quarantine_unusable_of_roll(&mut self, report: &mut StepReport) {
+        for slot in self.roll.slots() {
+            let Some(body) = self.bodies.get_mut(slot) else { continue };
+            if body.enabled && !body.quarantined && !body.is_finite() {
+                body.quarantine(None);
+                report.quarantined.push(BodyKey(self.bodies.key_of(slot)));
+            }
         }
     }
 

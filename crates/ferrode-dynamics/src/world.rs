@@ -6,6 +6,7 @@ use crate::ends::{Ends, Frame};
 use crate::error::{finite, finite_number, not_nan};
 use crate::group::{GroupKey, JointGroup};
 use crate::joint::{Contact, Joint, JointKind, Link, Node};
+use crate::roll::Roll;
 use crate::solve::direct::DirectSettings;
 use crate::solve::substep::SubstepSettings;
 use crate::step::Scratch;
@@ -81,6 +82,7 @@ pub(crate) struct List {
 #[derive(Clone, Debug)]
 pub struct World {
     pub(crate) bodies: Arena<Body>,
+    pub(crate) roll: Roll,
     pub(crate) joints: Arena<Joint>,
     pub(crate) groups: Arena<JointGroup>,
     pub(crate) body_list: List,
@@ -107,6 +109,7 @@ impl World {
     pub fn new() -> Self {
         Self {
             bodies: Arena::default(),
+            roll: Roll::default(),
             joints: Arena::default(),
             groups: Arena::default(),
             body_list: List { first: NIL },
@@ -324,6 +327,7 @@ impl World {
             self.bodies.at_mut(self.body_list.first).prev = key.index;
         }
         self.body_list.first = key.index;
+        self.roll.call(key.index);
         BodyKey(key)
     }
 
@@ -360,6 +364,7 @@ impl World {
     /// [`Error::NoSuchBody`].
     pub fn body_mut(&mut self, body: BodyKey) -> Result<&mut Body, Error> {
         let index = self.body_index(body)?;
+        self.roll.call(index);
         Ok(self.bodies.at_mut(index))
     }
 
@@ -373,6 +378,18 @@ impl World {
         let link = move |i: u32| (i != NIL).then_some(i);
         core::iter::successors(link(self.body_list.first), move |i| link(self.bodies.at(*i).next))
             .map(|i| (self.body_key(i), self.bodies.at(i)))
+    }
+
+    /// The bodies that may be awake: all that are enabled or quarantined, and those that were changed through
+    /// [`World::body_mut`]. Others sleep as they did. `Substep` strikes off who sleeps; the other steppers do not.
+    pub fn roll(&self) -> impl Iterator<Item = BodyKey> + '_ {
+        self.roll.slots().filter(|slot| self.bodies.get(*slot).is_some()).map(|slot| self.body_key(slot))
+    }
+
+    /// Number of bodies on the [`roll`](Self::roll), or a few more, and how many times bodies were struck off: who goes by the roll and finds
+    /// that the second number is not what he saw after his last step has missed some.
+    pub fn roll_call(&self) -> (usize, u64) {
+        (self.roll.count(), self.roll.cleared)
     }
 
     /// Number of bodies.

@@ -128,6 +128,7 @@ impl World {
                 if let Some(left) = left.filter(|_| !neighbour.quarantined) {
                     work.body_seen[other as usize] = true;
                     self.bodies.at_mut(other).enabled = true;
+                    self.roll.call(other);
                     work.stack.push((other, left));
                 }
             }

@@ -35,11 +35,11 @@ impl World {
         }
         pipeline.fast.clear();
         let margin = pipeline.pairs.settings().margin;
-        for (slot, known) in pipeline.known.iter_mut().enumerate() {
-            let Some(known) = known else { continue };
+        self.call_geoms(pipeline);
+        for slot in pipeline.called.iter().copied() {
+            let Some(Some(known)) = pipeline.known.get_mut(slot as usize) else { continue };
             let Some(key) = known.body else { continue };
             let Ok(body) = self.dynamics.body(key) else { continue };
-            let slot = slot as u32;
             let awake = body.is_enabled() && !body.is_quarantined();
             if known.motion != Motion::Fixed && awake != (known.motion == Motion::Awake) {
                 known.motion = if awake { Motion::Awake } else { Motion::Asleep };
@@ -77,6 +77,23 @@ impl World {
                 }
             }
         }
+    }
+
+    /// Lists the geoms whose bodies may have moved, woken or fallen asleep.
+    fn call_geoms(&self, pipeline: &mut Pipeline) {
+        let (count, version) = self.dynamics.roll_call();
+        let called = &mut pipeline.called;
+        called.clear();
+        if pipeline.seen_roll != Some(version) || 2 * count > self.dynamics.body_count() {
+            called.extend(0..pipeline.known.len() as u32);
+            return;
+        }
+        for key in self.dynamics.roll() {
+            for geom in self.geoms_of_body.get(&key).map_or(&[][..], Vec::as_slice) {
+                called.extend(self.geom_slot(*geom).ok().map(|slot| slot as u32));
+            }
+        }
+        called.sort_unstable();
     }
 
     /// Wakes the bodies that sleep on a geom which is about to change.

@@ -25,6 +25,9 @@ pub(crate) struct Pipeline {
     pairs: PairCache,
     /// By the geoms' slots.
     known: Vec<Option<Known>>,
+    /// How often bodies had been struck off the world's roll at the end of the last step, and the geoms to look at in this one.
+    seen_roll: Option<u64>,
+    called: Vec<u32>,
     /// The world's versions that `known` and the manifolds were made for.
     seen_geoms: Option<u64>,
     seen_rules: (u64, u64),
@@ -42,6 +45,8 @@ impl Default for Pipeline {
         Self {
             pairs: PairCache::new(PairSettings::default()),
             known: Vec::new(),
+            seen_roll: None,
+            called: Vec::new(),
             seen_geoms: None,
             seen_rules: (0, 0),
             manifolds: Vec::new(),
@@ -70,6 +75,7 @@ impl World {
         let dynamics = self.dynamics.step_with_manifolds(h, &mut pipeline.manifolds, surfaces)?;
         pipeline.keep_impulses();
         self.stop_fast_bodies(pipeline)?;
+        pipeline.seen_roll = Some(self.dynamics.roll_call().1);
         self.report_substep(pipeline);
         self.advance_clock(h);
         Ok(Step {

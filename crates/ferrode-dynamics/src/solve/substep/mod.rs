@@ -131,7 +131,7 @@ impl World {
         self.timing.begin();
         let mut report = StepReport::default();
         let mut work = core::mem::take(&mut self.scratch.substep);
-        self.quarantine_unusable_bodies(&mut report);
+        self.quarantine_unusable_of_roll(&mut report);
         self.convert_surfaces(h, surfaces, &mut work);
         self.gather_awake(h, manifolds, &mut work);
         if work.bodies.len() > 0 {
@@ -186,40 +186,40 @@ impl World {
 
     fn gather_bodies(&mut self, h: f64, work: &mut Workspace) {
         // Bodies that were enabled by hand wake those that fell asleep with them.
-        let mut index = self.body_list.first;
-        while index != NIL {
-            let body = self.bodies.at(index);
-            let next = body.next;
-            if body.enabled && body.sleep_group != 0 {
-                self.rouse(index, &mut work.waking);
-            }
-            index = next;
-        }
         let mut waking = core::mem::take(&mut work.waking);
+        let returned = |slot: &u32| self.bodies.get(*slot).is_some_and(|b| b.enabled && b.sleep_group != 0);
+        let returned: Vec<u32> = self.roll.slots().filter(returned).collect();
+        for slot in returned {
+            self.rouse(slot, &mut waking);
+        }
         self.wake_islands(&mut waking);
         work.waking = waking;
 
+        for slot in &work.bodies.slots {
+            work.places[*slot as usize] = (NIL, 0);
+        }
         work.bodies.clear();
         work.pushed.clear();
-        work.places.clear();
         work.places.resize(self.bodies.capacity(), (NIL, 0));
         let gravity = self.params.gravity;
-        let mut index = self.body_list.first;
-        while index != NIL {
-            let body = self.bodies.at(index);
-            if body.enabled || body.quarantined {
-                work.places[index as usize] =
-                    (work.bodies.len() as u32, self.bodies.key_of(index).serial as u32);
-                work.pushed.push(body.force != Vec3::ZERO || body.torque != Vec3::ZERO);
-                let mut force = body.force;
-                if body.gravity_mode {
-                    force += gravity * body.mass.mass;
-                }
-                let torque = body.torque + body.gyroscopic(h);
-                work.bodies.push(index, body, force, torque);
+        let bodies = &self.bodies;
+        self.roll.retain(|slot| bodies.get(slot).is_some_and(|body| body.enabled || body.quarantined));
+        for index in self.roll.slots() {
+            let body = bodies.at(index);
+            work.places[index as usize] = (work.bodies.len() as u32, bodies.key_of(index).serial as u32);
+            work.pushed.push(body.force != Vec3::ZERO || body.torque != Vec3::ZERO);
+            let mut force = body.force;
+            if body.gravity_mode {
+                force += gravity * body.mass.mass;
             }
-            index = body.next;
+            let torque = body.torque + body.gyroscopic(h);
+            work.bodies.push(index, body, force, torque);
         }
+        debug_assert_eq!(
+            work.bodies.len(),
+            self.bodies().filter(|(_, body)| body.enabled || body.quarantined).count(),
+            "a body that is awake is not on the roll"
+        );
     }
 
     /// Collects the joints of awake bodies. Contact joints become manifolds.

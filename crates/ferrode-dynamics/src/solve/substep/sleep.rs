@@ -107,6 +107,7 @@ impl World {
 
     /// Wakes a body, and notes its island as one to be woken.
     pub(super) fn rouse(&mut self, slot: u32, waking: &mut Vec<u64>) {
+        self.roll.call(slot);
         let body = self.bodies.at_mut(slot);
         body.enable();
         body.rest_time = 0.0;
@@ -130,6 +131,7 @@ impl World {
                 body.sleep_group = 0;
                 body.enable();
                 body.rest_time = 0.0;
+                self.roll.call(index);
             }
             index = body.next;
         }
