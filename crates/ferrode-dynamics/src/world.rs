@@ -646,6 +646,81 @@ impl World {
         Ok(())
     }
 
+    /// Says whether [`Stepper::Substep`](crate::Stepper::Substep) solves a joint exactly, as a part of an articulation: together with all joints
+    /// that bodies link it to and that are exact too. `None`, as joints begin: as [`SubstepSettings::exact_joints`](crate::SubstepSettings::exact_joints)
+    /// says, unless that would cost much. An articulation with a joint of `Some(true)` is solved exactly whatever it costs.
+    ///
+    /// The other steppers solve all joints in one way.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchJoint`].
+    pub fn set_joint_exact(&mut self, joint: JointKey, exact: Option<bool>) -> Result<(), Error> {
+        let index = self.joint_index(joint)?;
+        self.joints.at_mut(index).exact = exact;
+        Ok(())
+    }
+
+    /// What [`World::set_joint_exact`] has said of a joint.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchJoint`].
+    pub fn joint_exact(&self, joint: JointKey) -> Result<Option<bool>, Error> {
+        Ok(self.joints.at(self.joint_index(joint)?).exact)
+    }
+
+    /// [`World::set_joint_exact`] for all joints of a body's articulation: a whole robot, vehicle or chain.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchBody`].
+    pub fn set_articulation_exact(&mut self, body: BodyKey, exact: Option<bool>) -> Result<(), Error> {
+        for index in self.articulation(self.body_index(body)?).1 {
+            self.joints.at_mut(index).exact = exact;
+        }
+        Ok(())
+    }
+
+    /// The bodies that joints other than contacts link to a body, itself first, and whether a joint or a kinematic body among them holds them to a
+    /// place.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchBody`].
+    pub fn articulation_of(&self, body: BodyKey) -> Result<(Vec<BodyKey>, bool), Error> {
+        let (bodies, joints) = self.articulation(self.body_index(body)?);
+        let held = |index: &u32| {
+            let mut ends = self.joints.at(*index).nodes.iter().map(|node| node.body);
+            ends.any(|body| body == NIL || self.bodies.at(body).is_kinematic())
+        };
+        Ok((bodies.into_iter().map(|index| self.body_key(index)).collect(), joints.iter().any(held)))
+    }
+
+    /// The bodies and joints that joints other than contacts connect with a body. What no force moves connects nothing.
+    fn articulation(&self, first: u32) -> (Vec<u32>, Vec<u32>) {
+        let (mut bodies, mut joints) = (vec![first], Vec::new());
+        let mut seen = std::collections::BTreeSet::from([first]);
+        let mut at = 0;
+        while let Some(body) = bodies.get(at).map(|index| self.bodies.at(*index)) {
+            at += 1;
+            let mut link = body.first_joint;
+            while link != NIL && !body.is_kinematic() {
+                let (index, side) = (link >> 1, (link & 1) as usize);
+                let joint = self.joints.at(index);
+                link = joint.nodes[side].next;
+                if matches!(joint.kind, JointKind::Contact(_)) {
+                    continue;
+                }
+                let other = joint.nodes[1 - side].body;
+                // A joint shows up at both of its ends.
+                if side == 0 || other == NIL || self.bodies.at(other).is_kinematic() {
+                    joints.push(index);
+                }
+                if other != NIL && seen.insert(other) {
+                    bodies.push(other);
+                }
+            }
+        }
+        (bodies, joints)
+    }
+
     /// Whether a joint is switched on.
     ///
     /// # Errors

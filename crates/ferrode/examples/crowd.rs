@@ -1,11 +1,10 @@
 //! Scenes of many bodies, timed: `cargo run --release --example crowd -- pyramid 600`.
 //!
-//! Arguments: the scene (`pyramid`, `bin`, `heap`, `ragdolls`, `chain`), the number of steps, and optionally the number of
-//! bodies or rows, and
-//! `awake` to keep bodies from falling asleep, `substeps=8`, `frequency=60`, `damping=5`, `push=1`.
+//! Arguments: the scene (`pyramid`, `bin`, `ragdolls`, `robots`, `chain`, `heavy`), the number of steps, and optionally the
+//! number of bodies, rows or robots, and `awake` to keep bodies from falling asleep, `substeps=8`, `frequency=60`, `damping=5`, `push=1`.
 
 use ferrode::prelude::*;
-use ferrode::{Ball, Hinge};
+use ferrode::{Ball, Hinge, JointError};
 use std::time::Instant;
 
 const H: f64 = 1.0 / 60.0;
@@ -28,6 +27,7 @@ fn main() -> Result<(), Error> {
             "substeps" => settings.substeps = number as u32,
             "frequency" => settings.contact.frequency = number,
             "damping" => settings.contact.damping_ratio = number,
+            "loose" => settings.exact_joints = false,
             "jfrequency" => settings.joint.frequency = number,
             "jdamping" => settings.joint.damping_ratio = number,
             "push" => settings.push_out_speed = number,
@@ -40,7 +40,9 @@ fn main() -> Result<(), Error> {
         "pyramid" => pyramid(&mut world, or(40))?,
         "bin" => bin(&mut world, or(4096))?,
         "ragdolls" => ragdolls(&mut world, or(200))?,
-        "chain" => chain(&mut world, or(1000))?,
+        "robots" => robots(&mut world, or(64))?,
+        "chain" => _ = chain(&mut world, or(1000))?,
+        "heavy" => heavy(&mut world, or(20))?,
         other => {
             eprintln!("no scene {other}");
             return Ok(());
@@ -48,16 +50,19 @@ fn main() -> Result<(), Error> {
     }
     let start: Vec<Vec3> = world.bodies().map(|(_, b)| b.position()).collect();
     let (mut times, mut deepest) = (Vec::new(), 0.0f64);
+    let (mut widest, mut askew) = (0.0f64, 0.0f64);
     for i in 0..steps {
         let before = Instant::now();
         let step = world.step(H)?;
         times.push(before.elapsed().as_secs_f64() * 1e3);
         deepest = deepest.max(step.max_depth);
+        widest = widest.max(joint_error(&world, |e| e.position));
+        askew = askew.max(joint_error(&world, |e| e.angle));
         if (i + 1) % 60 == 0 {
             let moved = (world.bodies().zip(&start)).map(|((_, b), s)| (b.position() - *s).length());
             let last = &times[times.len() - 60..];
             println!(
-                "{:5.1} s  {:7.3} ms  least {:7.3}  contacts {:6}  depth {:8.5}  awake {:5}  kinetic {:10.4}  moved {:.4}  error {:.5}",
+                "{:5.1} s  {:7.3} ms  least {:7.3}  contacts {:6}  depth {:8.5}  awake {:5}  kinetic {:10.4}  moved {:.4}  error {:.6} m {:.6} rad",
                 (i + 1) as f64 * H,
                 last.iter().sum::<f64>() / last.len() as f64,
                 last.iter().copied().fold(f64::INFINITY, f64::min),
@@ -66,18 +71,22 @@ fn main() -> Result<(), Error> {
                 world.bodies().filter(|(_, b)| b.is_enabled()).count(),
                 world.bodies().map(|(_, b)| b.kinetic_energy()).sum::<f64>(),
                 moved.fold(0.0, f64::max),
-                joint_error(&world),
+                joint_error(&world, |e| e.position),
+                joint_error(&world, |e| e.angle),
             );
         }
     }
     times.sort_by(f64::total_cmp);
     let mean = times.iter().sum::<f64>() / times.len() as f64;
-    println!("mean {mean:.3} ms, median {:.3} ms, deepest ever {deepest:.5} m", times[times.len() / 2]);
+    println!(
+        "mean {mean:.3} ms, median {:.3} ms; ever: depth {deepest:.5} m, joint error {widest:.6} m {askew:.6} rad",
+        times[times.len() / 2]
+    );
     Ok(())
 }
 
-fn joint_error(world: &World) -> f64 {
-    world.joints().filter_map(|j| world.joint_error(j).ok()).fold(0.0, |e, x| e.max(x.position))
+fn joint_error(world: &World, part: impl Fn(JointError) -> f64) -> f64 {
+    world.joints().filter_map(|j| world.joint_error(j).ok()).fold(0.0, |e, x| e.max(part(x)))
 }
 
 fn ground(world: &mut World) -> Result<(), Error> {
@@ -192,8 +201,50 @@ fn ragdoll(world: &mut World, at: Vec3) -> Result<(), Error> {
     Ok(())
 }
 
-/// A chain of capsules that hangs from its first.
-fn chain(world: &mut World, links: usize) -> Result<(), Error> {
+/// Robots of a torso, hinged to the world, and five limbs: 30 hinges with brakes each.
+fn robots(world: &mut World, count: usize) -> Result<(), Error> {
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    for robot in 0..count {
+        let base = Vec3::new((robot % 8) as f64 * 5.0, (robot / 8) as f64 * 5.0, 3.0);
+        let mut link = |at: Vec3, sides: Vec3, mass: f64, parent, anchor, axis, brake| -> Result<_, Error> {
+            let shape = Cuboid::new(sides)?;
+            let body = world.add_body(
+                BodyBuilder::new().at(at).with_shape(shape, mass / (sides.x * sides.y * sides.z)),
+            )?;
+            let joint = world.add_hinge(Some(body), parent, anchor, axis)?;
+            world.joint_mut::<Hinge>(joint)?.set_motor(0.0, brake)?;
+            Ok(body)
+        };
+        let mut links = vec![link(base, Vec3::new(0.4, 0.3, 0.6), 5.0, None, base, Vec3::Z, 5.0)?];
+        for k in 0..29 {
+            let (limb, joint) = (k % 5, k / 5);
+            let direction = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z][limb];
+            let anchor = base + direction * (0.4 + joint as f64 * 0.25);
+            let sides = Vec3::splat(0.08) + direction.abs() * 0.17;
+            let parent = if joint == 0 { links[0] } else { links[k + 1 - 5] };
+            let axis = axes[(limb / 2 + joint + 1) % 3];
+            let (mass, brake) = (0.5 + 0.1 * joint as f64, 1.0 + joint as f64);
+            links.push(link(anchor + direction * 0.125, sides, mass, Some(parent), anchor, axis, brake)?);
+        }
+    }
+    Ok(())
+}
+
+/// A chain with a ball of a hundred times a link's mass at its end.
+fn heavy(world: &mut World, links: usize) -> Result<(), Error> {
+    let last = chain(world, links)?;
+    let mass = last.map_or(Ok(1.0), |key| world.body(key).map(|body| body.mass().mass))?;
+    let end = Vec3::X * (links as f64 * 0.4);
+    let radius: f64 = 0.3;
+    let density = 100.0 * mass / (4.0 / 3.0 * core::f64::consts::PI * radius * radius * radius);
+    let shape = Sphere::new(radius)?;
+    let ball = world.add_body(BodyBuilder::new().at(end + Vec3::X * radius).with_shape(shape, density))?;
+    world.add_ball(Some(ball), last, end)?;
+    Ok(())
+}
+
+/// A chain of capsules that hangs from its first; its last.
+fn chain(world: &mut World, links: usize) -> Result<Option<BodyKey>, Error> {
     let mut before = None;
     for i in 0..links {
         let at = Vec3::new(i as f64 * 0.4 + 0.2, 0.0, 0.0);
@@ -206,5 +257,5 @@ fn chain(world: &mut World, links: usize) -> Result<(), Error> {
         world.joint_mut::<Ball>(joint)?.set_anchor(Vec3::new(i as f64 * 0.4, 0.0, 0.0))?;
         before = Some(body);
     }
-    Ok(())
+    Ok(before)
 }

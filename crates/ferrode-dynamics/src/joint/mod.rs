@@ -104,6 +104,8 @@ pub(crate) struct Joint {
     pub nodes: [Node; 2],
     pub reverse: bool,
     pub enabled: bool,
+    /// Whether `Substep` solves it as a part of an articulation; `None` as the settings say.
+    pub exact: Option<bool>,
     /// Slot of its group, or `NIL`.
     pub group: u32,
     /// World list.
@@ -291,6 +293,7 @@ impl Joint {
             nodes: [Node::DETACHED; 2],
             reverse: false,
             enabled: true,
+            exact: None,
             group: NIL,
             next: NIL,
             prev: NIL,
@@ -391,6 +394,12 @@ impl<J: JointData> JointMut<'_, J> {
     pub(crate) fn add_opposite_torques(&mut self, torque: Vec3) {
         let wrench = |torque| Wrench { force: Vec3::ZERO, torque };
         self.add_wrenches([wrench(torque), wrench(-torque)]);
+    }
+
+    /// Says whether `Substep` solves the joint exactly, as a part of an articulation: see [`World::set_joint_exact`].
+    pub fn set_exact(&mut self, exact: Option<bool>) -> &mut Self {
+        self.world.joints.at_mut(self.index).exact = exact;
+        self
     }
 
     /// Attaches the joint to its bodies; `None` stands for the static world, two `None` for limbo.

@@ -41,7 +41,7 @@
 
 pub(crate) mod factor;
 pub(crate) mod kernels;
-pub(crate) mod ordering;
+pub mod ordering;
 pub(crate) mod symbolic;
 pub(crate) mod system;
 

@@ -11,10 +11,10 @@ use std::collections::BinaryHeap;
 
 /// An unknown to be eliminated: the acceleration of a body, or the forces of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Node {
+pub struct Node {
     /// Numbers in it.
     pub size: u8,
-    /// If this is a joint all of whose bodies are unknowns too: these. It has to wait until one of them is eliminated.
+    /// If this is a joint all of whose bodies are unknowns too: these. It has to wait until one of them is eliminated. Else `u32::MAX`.
     pub after: [u32; 2],
 }
 
@@ -31,7 +31,7 @@ impl Node {
 
 /// Memory of the elimination.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Elimination {
+pub struct Elimination {
     /// Neighbours not yet eliminated, ascending.
     neighbours: Vec<Vec<u32>>,
     merged: Vec<u32>,

@@ -93,3 +93,22 @@ pub fn dispatch_at<K: Kernel>(level: Level, kernel: K) -> K::Out {
         _ => kernel.run::<Portable<4>>(),
     }
 }
+
+/// As [`dispatch_at`] for large kernels: compiled for one lane and the machine's own instructions only. Other levels run as those.
+#[inline]
+pub fn dispatch_few<K: Kernel>(level: Level, kernel: K) -> K::Out {
+    match level {
+        Level::Scalar | Level::Portable4 | Level::Portable8 | Level::Portable16 => {
+            kernel.run::<Portable<1>>()
+        }
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: `is_available` has found the instructions on this machine.
+        Level::Avx2 | Level::Avx512 if Level::Avx2.is_available() => unsafe { super::x86::run_avx2(kernel) },
+        #[cfg(target_arch = "x86_64")]
+        _ => kernel.run::<super::x86::F32x4>(),
+        #[cfg(target_arch = "aarch64")]
+        _ => kernel.run::<super::neon::F32x4>(),
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        _ => kernel.run::<Portable<1>>(),
+    }
+}

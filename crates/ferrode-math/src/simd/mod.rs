@@ -56,7 +56,7 @@ mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
-pub use level::{Level, dispatch, dispatch_at};
+pub use level::{Level, dispatch, dispatch_at, dispatch_few};
 pub use record::{NO_RECORD, Record};
 pub use wide::{Compute, compute_wide};
 

@@ -32,7 +32,7 @@ impl World {
         let Self { dynamics, colliders, space, geom_infos, pair_surfaces, .. } = self;
         let queries = colliders.queries(*space)?;
         for fast in &pipeline.fast {
-            let Ok(body) = dynamics.body_mut(fast.body) else { continue };
+            let Ok(body) = dynamics.body(fast.body) else { continue };
             let path = body.position() - fast.start.position;
             let stops = |key: GeomKey, other: &Geom| {
                 let info = geom_infos.get(other.user() as usize).and_then(Option::as_ref);
@@ -40,19 +40,27 @@ impl World {
                 info.is_some_and(|info| info.body.is_none())
                     && pair_surfaces.get(&pair).is_none_or(Option::is_some)
             };
-            if let Some(fraction) = first_hit(&queries, fast, path, stops) {
-                body.set_position(fast.start.position + path * fraction)?;
+            // A limb is stopped when it is about to go through, not when it touches, and takes along what hangs on it.
+            let jointed = dynamics.body_joints(fast.body)?.next().is_some();
+            let Some(fraction) = first_hit(&queries, fast, path, jointed, stops) else { continue };
+            let (bodies, held) = dynamics.articulation_of(fast.body)?;
+            let back = path * (fraction - 1.0);
+            for key in if held { &bodies[..1] } else { &bodies } {
+                let body = dynamics.body_mut(*key)?;
+                let position = body.position() + back;
+                body.set_position(position)?;
             }
         }
         Ok(())
     }
 }
 
-/// The part of the path that a geom can go, of what stands still and is not passed by wish.
+/// The part of the path that a geom, or its core, can go, of what stands still and is not passed by wish.
 fn first_hit(
     queries: &Queries<'_>,
     fast: &Fast,
     path: Vec3,
+    core_only: bool,
     stops: impl Fn(GeomKey, &Geom) -> bool,
 ) -> Option<f64> {
     let geom = queries.colliders().geom(fast.geom)?;
@@ -65,7 +73,7 @@ fn first_hit(
     for i in 0..PASSED {
         let filter = |key: GeomKey, g: &Geom| meets(g) && !passed[..i].contains(&Some(key)) && stops(key, g);
         let Some(hit) = queries.shape_cast(geom.shape(), &pose, path, filter) else { break };
-        if hit.fraction > 0.0 && hit.depth <= 0.0 {
+        if hit.fraction > 0.0 && hit.depth <= 0.0 && !core_only {
             return nearer(nearest, hit.fraction);
         }
         if let Some(fraction) = cast_core(queries, geom.shape(), &pose, path, hit.geom) {

@@ -5,6 +5,7 @@
 //! between substeps, so do the bodies' velocities: by the impulses so far along the new rows, less those along the old.
 
 use super::bodies::{SolverBodies, mul_lower_transpose, rotation_of};
+use super::manifold::to_f32;
 use super::soft::Coefficients;
 use crate::Softness;
 use crate::arena::{Arena, NIL};
@@ -19,25 +20,33 @@ pub(super) const REMEMBERED: usize = 8;
 /// Most rows that are solved as one block.
 const BLOCK: usize = 6;
 
+/// The part of its error that a joint of an articulation corrects in a substep.
+const EXACT_RATE: f64 = 0.4;
+/// Largest speed, in m/s or rad/s, at which it does.
+const EXACT_SPEED: f64 = 20.0;
+
 /// A row with scaled Jacobians.
 #[derive(Clone, Copy, Debug)]
-struct JointRow {
-    jacobian: [[f32; 6]; 2],
+pub(super) struct JointRow {
+    /// In world units for joints of articulations, which scale them themselves.
+    pub jacobian: [[f32; 6]; 2],
     /// 1 / (J̃ J̃ᵀ + γ).
     mass: f32,
     /// Wanted velocity.
-    target: f32,
+    pub target: f32,
     /// Velocity that corrects the position, in the biased pass.
-    bias: f32,
+    pub bias: f32,
+    /// The error of position that an articulation may take out by moving the bodies: none of springs, stops and motors.
+    pub error: f32,
     mass_scale: f32,
     impulse_scale: f32,
-    gamma: f32,
-    lo: f32,
-    hi: f32,
-    impulse: f32,
+    pub gamma: f32,
+    pub lo: f32,
+    pub hi: f32,
+    pub impulse: f32,
     slot: u8,
     /// A spring stays one in the relaxing pass.
-    spring: bool,
+    pub spring: bool,
 }
 
 /// A joint of this step.
@@ -47,8 +56,12 @@ pub(super) struct JointConstraint {
     pub joint: u32,
     /// Dense places of its bodies, or `NIL`.
     pub bodies: [u32; 2],
-    first: u32,
-    count: u32,
+    /// Its rows.
+    pub first: u32,
+    pub count: u32,
+    /// Whether it is solved as a part of an articulation, and whether the joint is marked so.
+    pub exact: bool,
+    pub marked: bool,
     /// Rows of the block, which come first.
     block: u32,
     /// Inverse of the block's matrix, by rows of its lower triangle.
@@ -65,11 +78,22 @@ pub(super) struct JointMemory {
     pub impulses: [f32; REMEMBERED],
 }
 
+/// When rows are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum When {
+    /// In the first substep.
+    First,
+    /// In another.
+    Next,
+    /// After the last.
+    End,
+}
+
 /// The joints of a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Joints {
     pub constraints: Vec<JointConstraint>,
-    rows: Vec<JointRow>,
+    pub rows: Vec<JointRow>,
     before: Vec<JointRow>,
     scratch: Vec<Row>,
     /// Bodies at the ends of joints, and where they are.
@@ -102,8 +126,9 @@ impl Joints {
         self.wrenches.clear();
     }
 
-    /// Adds a joint between two bodies by their dense places.
-    pub fn push(&mut self, joint: u32, bodies: [u32; 2], feedback: bool) {
+    /// Adds a joint between two bodies by their dense places. `exact`: whether it may be solved as a part of an articulation, and
+    /// whether it has to.
+    pub fn push(&mut self, joint: u32, bodies: [u32; 2], exact: [bool; 2], feedback: bool) {
         let place = if feedback {
             self.wrenches.push([Wrench::default(); 2]);
             self.wrenches.len() as u32 - 1
@@ -115,6 +140,8 @@ impl Joints {
             bodies,
             first: 0,
             count: 0,
+            exact: exact[0],
+            marked: exact[1],
             block: 0,
             inverse: [0.0; BLOCK * (BLOCK + 1) / 2],
             feedback: place,
@@ -138,10 +165,10 @@ impl Joints {
     }
 
     /// Writes the rows of a substep, and makes up for what changed since the one before. Forces that joints add meanwhile act on the
-    /// bodies.
+    /// bodies. At the end, only the rows of articulations are written, and nothing acts.
     pub fn rewrite(
         &mut self,
-        first: bool,
+        when: When,
         context: &JointContext,
         bodies: &mut SolverBodies,
         world: &Arena<Body>,
@@ -151,6 +178,7 @@ impl Joints {
         if self.constraints.is_empty() {
             return;
         }
+        let (first, end) = (when == When::First, when == When::End);
         self.update_frames(first, bodies, world);
         core::mem::swap(&mut self.rows, &mut self.before);
         self.rows.clear();
@@ -159,6 +187,12 @@ impl Joints {
             let mut constraint = self.constraints[i];
             let old = constraint.first as usize..(constraint.first + constraint.count) as usize;
             let old = if first { 0..0 } else { old };
+            let loose = !constraint.exact;
+            if end && loose {
+                self.constraints[i].first = self.rows.len() as u32;
+                self.rows.extend_from_slice(&self.before[old]);
+                continue;
+            }
             let serial = joints.key_of(constraint.joint).serial;
             let joint = joints.at_mut(constraint.joint);
             let frames = &self.frames;
@@ -176,7 +210,7 @@ impl Joints {
             model.write_rows(&ends, &context.step, &mut out);
             let forces = out.forces;
 
-            for row in &self.before[old.clone()] {
+            for row in self.before[old.clone()].iter().filter(|_| loose) {
                 apply(&row.jacobian, -row.impulse, constraint.bodies, bodies);
             }
             let start = self.rows.len();
@@ -192,7 +226,7 @@ impl Joints {
                     if in_block == bounded {
                         continue;
                     }
-                    let mut made = JointRow::new(row, constraint.bodies, bodies, context);
+                    let mut made = JointRow::new(row, &constraint, bodies, context);
                     let slot = usize::from(row.slot);
                     made.impulse = if first {
                         remembered.impulses.get(slot).map_or(0.0, |x| x * context.ratio)
@@ -203,7 +237,9 @@ impl Joints {
                             .map_or(0.0, |b| b.impulse)
                     };
                     made.impulse = made.impulse.max(made.lo).min(made.hi);
-                    apply(&made.jacobian, made.impulse, constraint.bodies, bodies);
+                    if loose {
+                        apply(&made.jacobian, made.impulse, constraint.bodies, bodies);
+                    }
                     self.rows.push(made);
                     if constraint.feedback != NIL {
                         self.world.push([row.linear1, row.angular1, row.linear2, row.angular2]);
@@ -212,10 +248,12 @@ impl Joints {
             }
             constraint.first = start as u32;
             constraint.count = (self.rows.len() - start) as u32;
-            constraint.factor(&self.rows[start..]);
+            if loose {
+                constraint.factor(&self.rows[start..]);
+            }
             self.constraints[i] = constraint;
             let h = context.step.h / context.substeps;
-            for (body, wrench) in constraint.bodies.into_iter().zip(forces) {
+            for (body, wrench) in constraint.bodies.into_iter().zip(forces).filter(|_| !end) {
                 if body != NIL && (wrench.force != Vec3::ZERO || wrench.torque != Vec3::ZERO) {
                     bodies.push_impulse(body as usize, wrench.force * h, wrench.torque * h);
                 }
@@ -245,7 +283,7 @@ impl Joints {
 
     /// Solves each joint once.
     pub fn solve(&mut self, relax: bool, bodies: &mut SolverBodies) {
-        for constraint in &self.constraints {
+        for constraint in self.constraints.iter().filter(|c| !c.exact) {
             let rows = &mut self.rows[constraint.first as usize..][..constraint.count as usize];
             let mut u = constraint.bodies.map(|body| bodies.scaled_velocity(body));
             constraint.solve(relax, rows, &mut u);
@@ -327,8 +365,13 @@ fn dot(a: &[f32; 6], b: &[f32; 6]) -> f32 {
 }
 
 impl JointRow {
-    fn new(row: &Row, places: [u32; 2], bodies: &SolverBodies, context: &JointContext) -> Self {
+    fn new(row: &Row, constraint: &JointConstraint, bodies: &SolverBodies, context: &JointContext) -> Self {
+        let places = constraint.bodies;
         let scaled = |place: u32, linear: Vec3, angular: Vec3| {
+            if constraint.exact {
+                let ([a, b, c], [d, e, f]) = (to_f32(linear), to_f32(angular));
+                return [a, b, c, d, e, f];
+            }
             let Some(scale) = bodies.scales.get(place as usize) else { return [0.0; 6] };
             let s = scale.0.map(f64::from);
             let (l, a) = (linear * s[0], mul_lower_transpose(&[s[1], s[2], s[3], s[4], s[5], s[6]], angular));
@@ -355,14 +398,22 @@ impl JointRow {
         let own = row.kind != RowKind::Motor && row.cfm > step.cfm.max(1e-9);
         let erp = if error != 0.0 { (row.c - velocity) * step.h / error } else { step.erp };
         let part = Softness { erp, cfm: row.cfm }.at_substep(n);
-        let rate = if own { part.erp / h } else { f64::from(context.soft.bias_rate) };
+        let rate = if own {
+            part.erp / h
+        } else if constraint.exact {
+            EXACT_RATE / h
+        } else {
+            f64::from(context.soft.bias_rate)
+        };
+        let most = if constraint.exact { EXACT_SPEED } else { f64::INFINITY };
         let gamma = (part.cfm / h) as f32;
         let k = dot(&jacobian[0], &jacobian[0]) + dot(&jacobian[1], &jacobian[1]) + gamma;
         Self {
             jacobian,
             mass: if k > 0.0 { 1.0 / k } else { 0.0 },
             target: (velocity - still) as f32,
-            bias: if bounces { 0.0 } else { (rate * error) as f32 },
+            bias: if bounces { 0.0 } else { (rate * error).clamp(-most, most) as f32 },
+            error: if own || row.kind != RowKind::Joint { 0.0 } else { error as f32 },
             mass_scale: if own || row.kind == RowKind::Motor { 1.0 } else { context.soft.mass_scale },
             impulse_scale: if own || row.kind == RowKind::Motor { 0.0 } else { context.soft.impulse_scale },
             gamma,

@@ -13,6 +13,7 @@
 //!
 //! Contacts are linearised once per step, joints write their rows anew in each substep. See docs/substep.md.
 
+mod articulation;
 mod bodies;
 mod colour;
 mod contact;
@@ -33,12 +34,13 @@ use crate::foreign::MovedObserver;
 use crate::joint::JointKind;
 use crate::timing::Phase;
 use crate::{Error, StepReport, Surface, World};
+use articulation::{Articulations, Mode, Task};
 use bodies::{SolverBodies, rotation_of};
 use colour::Colouring;
 use contact::{Contacts, ManifoldKey, NOT_SOLVED, Pass};
 use ferrode_math::Vec3;
 use ferrode_math::simd::Level;
-use joints::{JointContext, JointMemory, Joints};
+use joints::{JointContext, JointMemory, Joints, When};
 use manifold::STATIC;
 use surface::SurfaceCoefficients;
 
@@ -51,6 +53,7 @@ pub(crate) struct Workspace {
     bodies: SolverBodies,
     contacts: Contacts,
     joints: Joints,
+    articulations: Articulations,
     colouring: Colouring,
     surfaces: Vec<SurfaceCoefficients>,
     /// Dense place and serial of each of the world's bodies.
@@ -270,7 +273,9 @@ impl World {
                     work.loose.push(manifold);
                     work.loose_joints.push(index);
                 } else {
-                    work.joints.push(index, places, joint.feedback.is_some());
+                    let exact = joint.exact.unwrap_or(self.params.substep.exact_joints);
+                    let marked = joint.exact == Some(true);
+                    work.joints.push(index, places, [exact, marked], joint.feedback.is_some());
                 }
             }
         }
@@ -359,7 +364,7 @@ impl World {
         let n = f64::from(settings.substeps);
         let part = h / n;
         let ratio = if work.last_h > 0.0 { (h / work.last_h) as f32 } else { 1.0 };
-        let Workspace { bodies, contacts, joints, surfaces, memory, .. } = work;
+        let Workspace { bodies, contacts, joints, articulations, surfaces, memory, .. } = work;
         contacts.prepare(
             level,
             &contact::Context {
@@ -377,6 +382,7 @@ impl World {
             ratio,
         };
         joints.begin(bodies, &self.bodies);
+        articulations.find(level, joints, bodies);
         self.timing.spent_on(Phase::Assembly);
         let dt = part as f32;
         for i in 0..settings.substeps {
@@ -384,16 +390,29 @@ impl World {
             if i == 0 {
                 contacts.pass(level, Pass::WarmStart, bodies, (dt, 0.0));
             }
-            joints.rewrite(i == 0, &context, bodies, &self.bodies, &mut self.joints, memory);
+            let when = if i == 0 { When::First } else { When::Next };
+            joints.rewrite(when, &context, bodies, &self.bodies, &mut self.joints, memory);
+            articulations.pass(level, Task::Load(joints, Some(dt)), bodies);
             joints.solve(false, bodies);
             contacts.pass(level, Pass::Biased, bodies, (dt, dt * i as f32));
+            articulations.pass(level, Task::Solve(Mode::Biased), bodies);
+            articulations.pass(level, Task::Bend(dt), bodies);
             bodies.integrate_positions(dt);
             joints.solve(true, bodies);
             contacts.pass(level, Pass::Relax, bodies, (dt, dt * (i + 1) as f32));
+            articulations.pass(level, Task::Solve(Mode::Relax), bodies);
+            articulations.pass(level, Task::Store(joints), bodies);
             joints.sum_feedback();
         }
         if contacts.has_bounce {
             contacts.pass(level, Pass::Restitution, bodies, (dt, h as f32));
+            articulations.pass(level, Task::Solve(Mode::Relax), bodies);
+            articulations.pass(level, Task::Store(joints), bodies);
+        }
+        if !articulations.is_empty() {
+            joints.rewrite(When::End, &context, bodies, &self.bodies, &mut self.joints, memory);
+            articulations.pass(level, Task::Load(joints, None), bodies);
+            articulations.pass(level, Task::Solve(Mode::Project), bodies);
         }
         contacts.store(level, manifolds);
         joints.remember(memory, &self.joints);

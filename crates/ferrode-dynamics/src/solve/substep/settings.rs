@@ -16,6 +16,10 @@ pub struct SubstepSettings {
     pub contact: Spring,
     /// How joints spring back, unless they have a CFM of their own: 68 Hz, damping ratio 5; capped as for contacts.
     pub joint: Spring,
+    /// Whether connected sets of joints are solved together and exactly, as articulations, where nothing is said of a joint
+    /// ([`World::set_joint_exact`](crate::World::set_joint_exact)). Yes by default: it costs little for chains, ragdolls, robots and
+    /// what else has few loops. Sets of many loops, such as nets, are left to sweeps from joint to joint, and so are the joints' springs.
+    pub exact_joints: bool,
     /// Largest speed in m/s at which contacts push bodies apart that overlap; 3 by default. The world's and the
     /// surface's limits hold as well.
     pub push_out_speed: f64,
@@ -34,6 +38,7 @@ impl Default for SubstepSettings {
             substeps: 6,
             contact: Spring { frequency: 68.0, damping_ratio: 0.5 },
             joint: Spring { frequency: 68.0, damping_ratio: 5.0 },
+            exact_joints: true,
             push_out_speed: 3.0,
             sleep_speed: 0.05,
             sleep_time: 0.5,

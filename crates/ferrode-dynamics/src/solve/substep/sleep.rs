@@ -17,12 +17,12 @@ pub(super) struct Sets {
 }
 
 impl Sets {
-    fn begin(&mut self, count: usize) {
+    pub(super) fn begin(&mut self, count: usize) {
         self.parent.clear();
         self.parent.extend(0..count as u32);
     }
 
-    fn root(&mut self, mut x: u32) -> u32 {
+    pub(super) fn root(&mut self, mut x: u32) -> u32 {
         while self.parent[x as usize] != x {
             let above = self.parent[self.parent[x as usize] as usize];
             self.parent[x as usize] = above;
@@ -32,7 +32,7 @@ impl Sets {
     }
 
     /// The smaller root stays one, so that the sets don't depend on the order of unions.
-    fn unite(&mut self, a: u32, b: u32) {
+    pub(super) fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         let (low, high) = (a.min(b), a.max(b));
         self.parent[high as usize] = low;

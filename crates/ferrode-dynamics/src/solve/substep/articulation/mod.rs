@@ -1,0 +1,248 @@
+//! Articulations: connected sets of joints that are solved together, exactly, in every sweep.
+//!
+//! Sweeps that go from joint to joint bring a force past one joint at a time; long chains and heavy ends open under them. Here the joints of
+//! a connected set are one block: J̃ J̃ᵀ over all of them is factorised in each substep (`shape`, `factor`), and after the contacts have had their
+//! say, the joints' rows are solved so that none is violated (`batch`). In a tree that takes time proportional to the joints.
+//!
+//! Articulations of one shape are solved in lanes, side by side.
+
+mod batch;
+mod factor;
+mod shape;
+
+use super::bodies::SolverBodies;
+use super::joints::Joints;
+use super::sleep::Sets;
+use crate::arena::NIL;
+use batch::Batch;
+pub(super) use batch::Mode;
+use core::any::Any;
+use core::cell::Cell;
+use core::ops::Range;
+use ferrode_math::simd::{Kernel, Lanes, Level, dispatch_few};
+use shape::{JointEnds, Shape};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Products of blocks per joint, on average, up to which joints that nothing is said of are solved exactly. A chain takes three;
+/// this is a band of six joints.
+const MOST_PRODUCTS: f64 = 24.0;
+/// Shapes that are kept though no articulation had them in the last step.
+const SPARE_SHAPES: usize = 64;
+
+/// What is known of a topology; no shape if it costs too much.
+#[derive(Debug)]
+struct Known {
+    shape: Option<Arc<Shape>>,
+    used: u64,
+}
+
+/// Batches of one kind of lanes.
+#[derive(Debug)]
+struct Batches<L: Lanes>(Vec<Batch<L>>);
+
+/// The articulations of a step.
+#[derive(Debug, Default)]
+pub(super) struct Articulations {
+    /// Shapes by topology, with whether any cost is accepted.
+    known: HashMap<(bool, Vec<JointEnds>), Known>,
+    shapes: Vec<Arc<Shape>>,
+    step: u64,
+    sets: Sets,
+    /// By body: its articulation, and its number therein.
+    found: Vec<[u32; 2]>,
+    members: Vec<Member>,
+    /// The members by shape, each with that; what is not solved exactly is left out.
+    order: Vec<(u32, u32)>,
+    /// Those that are solved side by side: places in this order.
+    groups: Vec<Range<usize>>,
+    /// Batches in the lanes of this machine, and of one lane for those that stand alone: `Batches<L>`.
+    wide: Option<Box<dyn Any + Send + Sync>>,
+    narrow: Option<Box<dyn Any + Send + Sync>>,
+}
+
+/// An articulation.
+#[derive(Debug, Default)]
+struct Member {
+    joints: Vec<u32>,
+    bodies: Vec<u32>,
+    ends: Vec<JointEnds>,
+    /// Whether a joint is marked exact, so that cost does not matter.
+    marked: bool,
+}
+
+/// What is done with all articulations.
+pub(super) enum Task<'a> {
+    /// Batches are made of them.
+    Arrange,
+    /// They take over the rows that the joints have written, for a substep of so many seconds; none after the last substep, when
+    /// nothing acts any more.
+    Load(&'a Joints, Option<f32>),
+    /// They are solved.
+    Solve(Mode),
+    /// Before bodies move by so many seconds, with the rotation that they have: see [`Batch::bend`].
+    Bend(f32),
+    /// The joints get their impulses.
+    Store(&'a mut Joints),
+}
+
+impl Articulations {
+    /// Finds the articulations among the joints, and takes those joints out of the sweeps from joint to joint.
+    pub fn find(&mut self, level: Level, joints: &mut Joints, bodies: &mut SolverBodies) {
+        self.shapes.clear();
+        self.order.clear();
+        self.groups.clear();
+        self.step += 1;
+        if !joints.constraints.iter().any(|c| c.exact) {
+            return;
+        }
+        self.find_sets(joints, bodies);
+        for (number, member) in self.members.iter_mut().enumerate() {
+            let key = (member.marked, core::mem::take(&mut member.ends));
+            let known = self.known.entry(key).or_insert_with_key(|(marked, ends)| {
+                let most = if *marked { f64::INFINITY } else { MOST_PRODUCTS };
+                Known { shape: Shape::new(member.bodies.len(), ends, most).map(Arc::new), used: 0 }
+            });
+            known.used = self.step;
+            let Some(shape) = &known.shape else {
+                for joint in &member.joints {
+                    joints.constraints[*joint as usize].exact = false;
+                }
+                continue;
+            };
+            let place = self.shapes.iter().position(|s| Arc::ptr_eq(s, shape)).unwrap_or_else(|| {
+                self.shapes.push(shape.clone());
+                self.shapes.len() - 1
+            });
+            self.order.push((place as u32, number as u32));
+        }
+        self.order.sort_unstable();
+        let lanes = dispatch_few(level, CountLanes);
+        let mut at = 0;
+        for shape in self.order.chunk_by(|a, b| a.0 == b.0) {
+            self.groups.extend(shape.chunks(lanes).map(|group| {
+                at += group.len();
+                at - group.len()..at
+            }));
+        }
+        self.pass(level, Task::Arrange, bodies);
+        if self.known.len() > self.shapes.len() + SPARE_SHAPES {
+            let step = self.step;
+            self.known.retain(|_, known| known.used == step);
+        }
+    }
+
+    /// Gathers connected sets of joints, each with its bodies in the order in which its joints name them.
+    fn find_sets(&mut self, joints: &mut Joints, bodies: &SolverBodies) {
+        let Self { sets, found, members, .. } = self;
+        sets.begin(bodies.len());
+        for c in joints.constraints.iter_mut().filter(|c| c.exact) {
+            match c.bodies.map(|body| bodies.is_movable(body)) {
+                [true, true] => sets.unite(c.bodies[0], c.bodies[1]),
+                [false, false] => c.exact = false,
+                _ => {}
+            }
+        }
+        found.clear();
+        found.resize(bodies.len(), [NIL; 2]);
+        members.clear();
+        for (joint, c) in joints.constraints.iter().enumerate().filter(|(_, c)| c.exact) {
+            let movable = c.bodies.map(|body| bodies.is_movable(body).then_some(body));
+            let Some(first) = movable[0].or(movable[1]) else { continue };
+            let root = sets.root(first) as usize;
+            if found[root][0] == NIL {
+                found[root][0] = members.len() as u32;
+                members.push(Member::default());
+            }
+            let member = &mut members[found[root][0] as usize];
+            member.joints.push(joint as u32);
+            member.marked |= c.marked;
+            member.ends.push(movable.map(|body| {
+                let Some(body) = body else { return NIL };
+                let number = &mut found[body as usize][1];
+                if *number == NIL {
+                    *number = member.bodies.len() as u32;
+                    member.bodies.push(body);
+                }
+                *number
+            }));
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.order.is_empty()
+    }
+
+    /// Does something with all of them.
+    pub fn pass(&mut self, level: Level, mut task: Task<'_>, bodies: &mut SolverBodies) {
+        if self.order.is_empty() {
+            return;
+        }
+        for (level, wide) in [(level, true), (Level::Scalar, false)] {
+            dispatch_few(level, Run { articulations: self, bodies, task: &mut task, wide });
+        }
+    }
+}
+
+/// Tells how many lanes there are.
+struct CountLanes;
+
+impl Kernel for CountLanes {
+    type Out = usize;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> usize {
+        L::LANES
+    }
+}
+
+/// A task with lanes of one kind.
+struct Run<'a, 'p> {
+    articulations: &'a mut Articulations,
+    bodies: &'a mut SolverBodies,
+    task: &'a mut Task<'p>,
+    wide: bool,
+}
+
+impl Kernel for Run<'_, '_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) {
+        let Articulations { shapes, members, order, groups, wide, narrow, .. } = self.articulations;
+        let place = if self.wide { wide } else { narrow };
+        if let Task::Arrange = self.task {
+            // One that stands alone takes one lane.
+            let mine = groups.iter().filter(|group| self.wide == (group.len() > 1));
+            let list: Vec<_> = mine
+                .map(|group| {
+                    let number = order[group.start].0;
+                    let shape = &shapes[number as usize];
+                    let mut batch = Batch::<L>::new(number, shape);
+                    for (_, member) in &order[group.clone()] {
+                        let member = &members[*member as usize];
+                        batch.push(shape, &member.bodies, &member.joints);
+                    }
+                    batch
+                })
+                .collect();
+            *place = Some(Box::new(Batches(list)));
+            return;
+        }
+        let Some(Batches(list)) = place.as_mut().and_then(|b| b.downcast_mut::<Batches<L>>()) else { return };
+        let velocities = Cell::from_mut(self.bodies.velocities.as_mut_slice()).as_slice_of_cells();
+        let deltas = Cell::from_mut(self.bodies.deltas.as_mut_slice()).as_slice_of_cells();
+        let scales = Cell::from_mut(self.bodies.scales.as_mut_slice()).as_slice_of_cells();
+        for batch in list {
+            let shape = &shapes[batch.shape as usize];
+            match self.task {
+                Task::Arrange => {}
+                Task::Load(joints, h) => batch.load(shape, joints, *h, scales, velocities),
+                Task::Solve(mode) => batch.sweep(shape, *mode, velocities, deltas),
+                Task::Bend(h) => batch.bend(*h, velocities, deltas),
+                Task::Store(joints) => batch.store(&joints.constraints, &mut joints.rows),
+            }
+        }
+    }
+}
