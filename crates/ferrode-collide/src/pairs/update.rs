@@ -165,25 +165,9 @@ impl PairCache {
                 changed.push(id);
             }
         }
-        if 2 * changes.len() > moving.len() + 16 {
-            // Most leaves: building the tree anew costs less, and its boxes are smaller.
-            changes.iter().for_each(|(id, leaf)| moving.set_box(*id, leaf));
-            new[1].extend(moving.leaves());
-            moving.build(&mut new[1]);
-            new[1].clear();
-        } else {
-            changes.iter().for_each(|(id, leaf)| moving.change(*id, leaf));
-        }
-        changes.clear();
-        for (tree, new) in [still, moving].into_iter().zip(new) {
-            if 4 * new.len() > tree.len() + 16 {
-                new.extend(tree.leaves());
-                tree.build(new);
-            } else {
-                new.iter().for_each(|(id, leaf)| tree.insert(*id, leaf));
-            }
-            new.clear();
-        }
+        moving.change_all(changes);
+        still.insert_all(&mut new[0], false);
+        moving.insert_all(&mut new[1], true);
     }
 
     /// Makes pairs of changed leaves and those they overlap.

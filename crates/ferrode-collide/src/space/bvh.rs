@@ -156,25 +156,9 @@ impl BvhSpace {
         }
         self.moved.clear();
         let Work { new, changes, .. } = &mut self.work;
-        if 2 * changes.len() > self.moving.len() + 16 {
-            // Most leaves: building the tree anew costs less, and its boxes are smaller.
-            changes.iter().for_each(|(payload, leaf)| self.moving.set_box(*payload, leaf));
-            new[1].extend(self.moving.leaves());
-            self.moving.build(&mut new[1]);
-            new[1].clear();
-        } else {
-            changes.iter().for_each(|(payload, leaf)| self.moving.change(*payload, leaf));
-        }
-        changes.clear();
-        for (tree, new) in [&mut self.still, &mut self.moving].into_iter().zip(new) {
-            if 4 * new.len() > tree.len() + 16 {
-                new.extend(tree.leaves());
-                tree.build(new);
-            } else {
-                new.iter().for_each(|(payload, leaf)| tree.insert(*payload, leaf));
-            }
-            new.clear();
-        }
+        self.moving.change_all(changes);
+        self.still.insert_all(&mut new[0], false);
+        self.moving.insert_all(&mut new[1], true);
     }
 
     /// Finds the pairs of the leaves that changed, and forgets those that they had before.

@@ -1,5 +1,6 @@
 //! A binary tree of boxes whose leaves come, go and move.
 
+use super::binning::{self, Item};
 use super::f32_box::{Box32, Pending};
 use super::pair_nodes::{Node, Nodes, PairNode};
 use super::probe::{Probe, RayLanes, nearer};
@@ -36,7 +37,17 @@ pub(crate) struct DynamicTree {
     /// By payload: its leaf.
     leaves: Vec<u32>,
     count: usize,
+    /// Leaves that changed since the tree was last looked over.
+    changes: usize,
+    /// What [`cost`](Self::cost) was when it was last built.
+    fresh: f64,
+    /// Working memory of [`build_soon`](Self::build_soon).
+    items: Vec<Item>,
+    stack: Vec<u32>,
 }
+
+/// A tree is built anew when its boxes have grown to this part of those of a new one.
+const WORN: f64 = 1.3;
 
 impl DynamicTree {
     /// Number of leaves.
@@ -60,18 +71,68 @@ impl DynamicTree {
     }
 
     /// Rebuilds the tree over these boxes by the surface area heuristic.
-    pub fn build(&mut self, items: &mut [(u32, Box32)]) {
+    fn build(&mut self, items: &mut [(u32, Box32)]) {
+        if self.start(items.iter().map(|i| i.0)) {
+            self.build_node(0, items);
+        }
+    }
+
+    /// Empties the tree to build it over these payloads; whether there are any.
+    fn start(&mut self, payloads: impl ExactSizeIterator<Item = u32>) -> bool {
         self.nodes.clear();
         self.parents.clear();
         self.free.clear();
         self.leaves.fill(NONE);
-        self.count = items.len();
-        if let Some(largest) = items.iter().map(|i| i.0).max() {
-            self.grow_leaves(largest);
-            self.nodes.add_pair();
-            self.parents.push(NONE);
-            self.build_node(0, items);
+        self.count = payloads.len();
+        let Some(largest) = payloads.max() else { return false };
+        self.grow_leaves(largest);
+        self.nodes.add_pair();
+        self.parents.push(NONE);
+        true
+    }
+
+    /// Rebuilds the tree over its leaves and these, within a fraction of the time that [`build`](Self::build) takes: for
+    /// leaves that will soon be elsewhere.
+    fn build_soon(&mut self, more: &[(u32, Box32)]) {
+        let mut items = core::mem::take(&mut self.items);
+        items.clear();
+        items.extend(self.leaves().chain(more.iter().copied()).map(|(payload, b)| Item::new(payload, &b)));
+        if self.start(items.iter().map(|i| i.payload)) {
+            self.build_node_soon(0, &mut items);
         }
+        self.items = items;
+        self.changes = 0;
+        self.fresh = self.cost();
+    }
+
+    fn build_node_soon(&mut self, node: u32, items: &mut [Item]) -> Box32 {
+        if let [item] = items {
+            let bounds = item.bounds();
+            self.nodes.set(node, leaf(item.payload, &bounds));
+            self.leaves[item.payload as usize] = node;
+            return bounds;
+        }
+        let split = binning::split(items);
+        let (low, high) = items.split_at_mut(split);
+        let child = self.new_pair(node);
+        let bounds = self.build_node_soon(child, low).union(&self.build_node_soon(child + 1, high));
+        self.nodes.set(node, Node { bounds, link: child, tag: NONE });
+        bounds
+    }
+
+    /// The surfaces of all boxes that hold others: what a search has to look at grows with it.
+    fn cost(&mut self) -> f64 {
+        let mut cost = 0.0;
+        self.stack.clear();
+        self.stack.extend((self.count > 1).then_some(0));
+        while let Some(i) = self.stack.pop() {
+            let node = self.nodes.get(i);
+            if !node.is_leaf() {
+                cost += f64::from(node.bounds.area());
+                self.stack.extend([node.link, node.link + 1]);
+            }
+        }
+        cost
     }
 
     fn build_node(&mut self, node: u32, items: &mut [(u32, Box32)]) {
@@ -160,13 +221,46 @@ impl DynamicTree {
         }
     }
 
-    /// Gives a leaf another box and leaves those above it wrong: for all that is done before [`build`](Self::build).
-    pub fn set_box(&mut self, payload: u32, bounds: &Box32) {
-        self.nodes.set_bounds(self.leaves[payload as usize], bounds);
+    /// Adds leaves, which must not be in the tree, and empties the list. Those that move are put into a tree that is built
+    /// quickly, those that stay into one that is searched quickly.
+    pub fn insert_all(&mut self, new: &mut Vec<(u32, Box32)>, moving: bool) {
+        if 4 * new.len() <= self.count + 16 {
+            new.iter().for_each(|(payload, bounds)| self.insert(*payload, bounds));
+        } else if moving {
+            self.build_soon(new);
+        } else {
+            new.extend(self.leaves());
+            self.build(new);
+        }
+        new.clear();
+    }
+
+    /// Gives leaves of the tree other boxes, and empties the list.
+    ///
+    /// Leaves that go separate ways stretch the boxes above them step by step, none of which would be worth a place
+    /// elsewhere. So the whole tree is looked at now and then, and built anew when it is worn.
+    pub fn change_all(&mut self, changes: &mut Vec<(u32, Box32)>) {
+        if 2 * changes.len() > self.count + 16 {
+            // Most leaves: building the tree anew costs no more, and its boxes are smaller.
+            for (payload, bounds) in changes.iter() {
+                self.nodes.set_bounds(self.leaves[*payload as usize], bounds);
+            }
+            self.build_soon(&[]);
+        } else {
+            changes.iter().for_each(|(payload, bounds)| self.change(*payload, bounds));
+            self.changes += changes.len();
+            if 2 * self.changes > self.count + 16 {
+                self.changes = 0;
+                if self.cost() > WORN * self.fresh {
+                    self.build_soon(&[]);
+                }
+            }
+        }
+        changes.clear();
     }
 
     /// Gives a leaf of the tree another box.
-    pub fn change(&mut self, payload: u32, bounds: &Box32) {
+    fn change(&mut self, payload: u32, bounds: &Box32) {
         let i = self.leaves[payload as usize];
         let sibling = self.nodes.bounds(i ^ 1);
         if i != 0 {
@@ -392,5 +486,47 @@ fn cross(
             stack.extend([(na.link, b), (na.link + 1, b)]);
         }
         _ => stack.extend([(a, nb.link), (a, nb.link + 1)]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ferrode_math::random::OdeRandom;
+
+    /// Leaves that go their own ways, none of them far in a step.
+    #[test]
+    fn long_drifting_does_not_wear_the_tree() {
+        let mut random = OdeRandom::new(1);
+        let mut number = || (f64::from(random.next_u32()) / 4294967296.0) as f32;
+        let mut places: Vec<[f32; 6]> = (0..400)
+            .map(|_| core::array::from_fn(|k| if k < 3 { 40.0 * number() } else { number() - 0.5 }))
+            .collect();
+        let around =
+            |p: &[f32; 6]| Box32 { min: [p[0], p[1], p[2]], max: [p[0] + 1.0, p[1] + 1.0, p[2] + 1.0] };
+        let list =
+            |places: &[[f32; 6]]| -> Vec<(u32, Box32)> { (0..).zip(places.iter().map(around)).collect() };
+        let (mut tree, mut fresh) = (DynamicTree::default(), DynamicTree::default());
+        tree.insert_all(&mut list(&places), true);
+        for step in 0..400 {
+            for p in &mut places {
+                for k in 0..3 {
+                    p[k] += 0.3 * p[k + 3];
+                    if p[k] < 0.0 || p[k] > 40.0 {
+                        p[k + 3] = -p[k + 3];
+                    }
+                }
+            }
+            // A third of them at a time.
+            let mut changes: Vec<_> = list(&places).into_iter().filter(|(i, _)| i % 3 == step % 3).collect();
+            tree.change_all(&mut changes);
+            fresh.build(&mut tree.leaves().collect::<Vec<_>>());
+            let (cost, least) = (tree.cost(), fresh.cost());
+            assert!(cost < 2.0 * least, "step {step}: {cost} for {least}");
+        }
+        let mut found = Vec::new();
+        tree.walk(|_| true, |payload| found.push(payload));
+        found.sort_unstable();
+        assert!(found.into_iter().eq(0..400));
     }
 }

@@ -4,6 +4,7 @@
 //! owns. It knows no shapes. Each kind reports pairs in the order in which ODE's space of that kind does, because
 //! the order of contacts decides what `Quick` computes.
 
+mod binning;
 mod bvh;
 pub(crate) mod dynamic_tree;
 pub(crate) mod f32_box;
