@@ -87,6 +87,60 @@ fn casts_and_distances_are_those_of_the_mesh() {
     assert!(hits > 150 && misses > 100, "{hits} {misses}");
 }
 
+/// Plains with towers and pits, over many blocks of cells: most are passed over.
+#[test]
+fn casts_over_plains_find_the_towers() {
+    let mut n = Numbers(OdeRandom::new(27));
+    let (mut hits, mut misses) = (0, 0);
+    for round in 0..12 {
+        let (columns, rows) = ([50, 90][round % 2], 70);
+        let mut heights: Vec<f64> = (0..columns * rows).map(|_| 0.02 * n.next()).collect();
+        for _ in 0..12 {
+            heights[n.0.next_below((columns * rows) as u32) as usize] = 4.0 * n.next();
+        }
+        let (width, depth) = (0.5 * (columns - 1) as f64, 0.4 * (rows - 1) as f64);
+        let field = Heightfield::new(width, depth, columns, rows, heights, 5.0).unwrap();
+        let (mesh, field) = (mesh(&field), Shape::from(field));
+        for _ in 0..25 {
+            let body = n.body();
+            let from = n.vector().component_mul(Vec3::new(0.6 * width, 2.5, 0.6 * depth));
+            let path = n.vector().component_mul(Vec3::new(width, [0.0, 0.5, 5.0][round % 3], depth));
+            let at = Frame::from(&Pose::new(from, n.pose(1.0).rotation));
+            let over = narrow::shape_cast((&body, &at), path, (&field, &Frame::IDENTITY));
+            let onto = narrow::shape_cast((&body, &at), path, (&mesh, &Frame::IDENTITY));
+            match (over, onto) {
+                (Some(f), Some(m)) => {
+                    hits += 1;
+                    assert!((f.fraction - m.fraction).abs() < 1e-6, "{round}: {f:?} {m:?}");
+                    assert!((f.depth - m.depth).abs() < 1e-6, "{round}: {f:?} {m:?}");
+                }
+                (None, None) => misses += 1,
+                _ => panic!("{round}: {over:?} {onto:?}"),
+            }
+        }
+    }
+    assert!(hits > 60 && misses > 60, "{hits} {misses}");
+}
+
+/// A tower a hundred thousand cells away.
+#[test]
+fn casts_over_endless_plains_go_far() {
+    let mut heights = vec![0.0; 1001 * 801];
+    heights[500 + 400 * 1001] = 3.0;
+    let field = Heightfield::new(1000.0, 800.0, 1001, 801, heights, 0.0).unwrap();
+    let field = Shape::from(field.wrapped());
+    let body = Shape::from(Sphere::new(0.5).unwrap());
+    // The towers are at whole multiples of 1000 and 800 m; there is none on the way to these.
+    let from = Vec3::new(-0.5, 1.0, 2.0);
+    let at = Frame::from(&Pose::from_position(from));
+    for (x, z) in [(100_000.0, 800.0), (-100_000.0, 800.0), (1000.0, 80_000.0)] {
+        let path = Vec3::new(x - from.x, 0.0, z - from.z) * 1.5;
+        let hit = narrow::shape_cast((&body, &at), path, (&field, &Frame::IDENTITY)).unwrap();
+        assert!((hit.fraction * 1.5 - 1.0).abs() < 1e-4, "{hit:?}");
+        assert!((hit.position - Vec3::new(x, 1.0, z)).length() < 1.5, "{hit:?}");
+    }
+}
+
 #[test]
 fn depths_are_those_of_sampled_surfaces() {
     let mut n = Numbers(OdeRandom::new(22));

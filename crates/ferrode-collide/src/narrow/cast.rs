@@ -32,7 +32,8 @@ const MOST_CELLS: usize = 1 << 16;
 /// without end it looks at no more than `cells`.
 ///
 /// The cells come in the order in which the body's box gets to them: strip by strip across the longer part of the path, in
-/// each the cells that the box passes while it is over the strip.
+/// each the cells that the box passes while it is over the strip. Blocks of cells that are all lower or all higher than the
+/// box at that time are passed over, those of sixteen strips at once if there is none else.
 fn body_field(
     body: &Body<'_>,
     path: Vec3,
@@ -41,8 +42,17 @@ fn body_field(
     mut best: Option<CastHit>,
 ) -> Option<CastHit> {
     let start = bounds(body);
-    let Some(whole) = within(&start, path, &field.aabb(&Frame::IDENTITY)) else { return best };
+    let Some(mut whole) = within(&start, path, &field.aabb(&Frame::IDENTITY)) else { return best };
     if !start.is_finite() {
+        return best;
+    }
+    // While it is neither above nor below all samples.
+    let hair = |low: f64, high: f64| {
+        1e-8 * (path.y.abs() + start.min.y.abs() + start.max.y.abs() + low.abs() + high.abs())
+    };
+    let (low, high) = field.all_heights();
+    let slack = hair(low, high);
+    if !overlap(&mut whole, low - start.max.y - slack, high - start.min.y + slack, path.y) {
         return best;
     }
     let (sx, sz) = field.cell();
@@ -71,10 +81,6 @@ fn body_field(
         };
         (low as i64, high as i64)
     };
-    let ordered = |(low, high): (i64, i64), k: usize| {
-        let back = speed[k] < 0.0;
-        (0..=(high - low).max(-1)).map(move |i| if back { high - i } else { low + i })
-    };
     // When the box is between two grid lines.
     let during = |k: usize, i: i64| -> Option<(f64, f64)> {
         let (low, high) = (i as f64 - half[k] - at[k], (i + 1) as f64 + half[k] - at[k]);
@@ -87,26 +93,82 @@ fn body_field(
     };
     let outer = usize::from(speed[1].abs() > speed[0].abs());
     let inner = 1 - outer;
-    for i in ordered(range(outer, whole.0, whole.1), outer) {
+    let back = [0, 1].map(|k| speed[k] < 0.0);
+    let (rest, toward) = (
+        |i: i64, k: usize| field.rest_of_block(i, counts[k], back[k]),
+        |i: i64, by: i64, k: usize| if back[k] { i - by } else { i + by },
+    );
+    // How far it is from one number to the last, in the order of the path.
+    let left = |i: i64, (low, high): (i64, i64), k: usize| if back[k] { i - low } else { high - i };
+    let first = |(low, high): (i64, i64), k: usize| if back[k] { high } else { low };
+    let place = |i: i64, j: i64| if outer == 0 { (i, j) } else { (j, i) };
+    // Whether the box is above or below all of a block between two times, or until the best hit; a hair less, against rounding.
+    let passes = |i: i64, j: i64, (from, to): (f64, f64), best: Option<CastHit>| {
+        let (x, z) = place(i, j);
+        let (low, high) = field.block_heights(x, z);
+        let to = best.map_or(to, |b| to.min(b.fraction).max(from));
+        let (rise, rise_to) = (path.y * from, path.y * to);
+        let (lowest, highest) = (start.min.y + rise.min(rise_to), start.max.y + rise.max(rise_to));
+        let hair = hair(low, high);
+        lowest - hair > high || highest + hair < low
+    };
+    let strips = range(outer, whole.0, whole.1);
+    let mut i = first(strips, outer);
+    // Strips that are known not to be passed over together.
+    let mut looked_at = 0;
+    while left(i, strips, outer) >= 0 {
         cells = if field.is_wrapped() { cells.saturating_sub(1) } else { cells };
         if cells == 0 {
             break;
         }
-        let Some((from, to)) = during(outer, i) else { continue };
+        let strip = i;
+        if looked_at == 0 {
+            looked_at = rest(i, outer).min(left(i, strips, outer) + 1);
+            let times = (during(outer, i), during(outer, toward(i, looked_at - 1, outer)));
+            if let (Some((from, _)), Some((_, to))) = times {
+                let row = range(inner, from, to);
+                let mut j = first(row, inner);
+                while left(j, row, inner) >= 0 && passes(i, j, (from, to), best) {
+                    j = toward(j, rest(j, inner), inner);
+                }
+                if left(j, row, inner) < 0 {
+                    i = toward(i, looked_at, outer);
+                    looked_at = 0;
+                    continue;
+                }
+            }
+        }
+        looked_at -= 1;
+        i = toward(i, 1, outer);
+        let Some((from, to)) = during(outer, strip) else { continue };
         if best.is_some_and(|b| b.fraction < from - 1e-9) {
             break;
         }
-        for j in ordered(range(inner, from, to), inner) {
+        let row = range(inner, from, to);
+        let mut j = first(row, inner);
+        // Cells of the block that the box is not above or below.
+        let mut open = 0;
+        while left(j, row, inner) >= 0 {
             if field.is_wrapped() {
                 if cells == 0 {
                     break;
                 }
                 cells -= 1;
             }
-            let (x, z) = if outer == 0 { (i, j) } else { (j, i) };
+            if open == 0 {
+                open = rest(j, inner);
+                if passes(strip, j, (from, to), best) {
+                    j = toward(j, open, inner);
+                    open = 0;
+                    continue;
+                }
+            }
+            let (x, z) = place(strip, j);
             for corners in field.cell_triangles(x, z) {
                 best = triangle_hit(body, &start, path, corners, best);
             }
+            open -= 1;
+            j = toward(j, 1, inner);
         }
     }
     best

@@ -1,3 +1,4 @@
+use super::height_blocks::HeightBlocks;
 use super::{LARGEST, ShapeError, checked_size};
 use crate::Frame;
 use ferrode_math::{Aabb, Vec3};
@@ -20,6 +21,7 @@ struct Field {
     columns: usize,
     rows: usize,
     heights: Vec<f64>,
+    blocks: HeightBlocks,
     low: f64,
     high: f64,
     /// The highest sample, whatever bounds are given.
@@ -70,8 +72,9 @@ impl Heightfield {
         }
         let low = heights.iter().copied().fold(f64::INFINITY, f64::min);
         let high = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let data =
-            Field { width, depth, columns, rows, heights, low, high, top: high, thickness, wrap: false };
+        let blocks = HeightBlocks::new(columns, rows, &heights);
+        let (top, wrap) = (high, false);
+        let data = Field { width, depth, columns, rows, heights, blocks, low, high, top, thickness, wrap };
         Ok(Self { data: Arc::new(data) })
     }
 
@@ -113,6 +116,10 @@ impl Heightfield {
     /// Samples along z.
     pub fn rows(&self) -> usize {
         self.data.rows
+    }
+
+    pub(super) fn blocks(&self) -> &HeightBlocks {
+        &self.data.blocks
     }
 
     /// Whether the field repeats.

@@ -8,6 +8,7 @@ mod cuboid;
 mod custom;
 mod cylinder;
 mod ellipsoid;
+mod height_blocks;
 mod heightfield;
 mod hull;
 mod plane;

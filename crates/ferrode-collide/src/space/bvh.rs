@@ -5,7 +5,7 @@ use crate::filter::passes;
 use ferrode_math::{Aabb, Vec3};
 
 /// Leaves of what moves are larger than the geoms by this part of their size, so that small moves change nothing.
-const FAT: f64 = 0.1;
+const FAT: f64 = 0.2;
 /// A leaf that its geom left grows in the direction of the move by this part of it: the geom will go on.
 const AHEAD: f64 = 1.0;
 

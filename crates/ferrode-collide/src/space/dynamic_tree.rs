@@ -2,9 +2,11 @@
 
 use super::binning::{self, Item};
 use super::f32_box::{Box32, Pending};
+use super::mirror::{Mirror, Search};
 use super::pair_nodes::{Node, Nodes, PairNode};
 use super::probe::{Probe, RayLanes, nearer};
 use super::tree::split;
+use super::wide::{Part, WideTree};
 
 const NONE: u32 = u32::MAX;
 
@@ -44,6 +46,7 @@ pub(crate) struct DynamicTree {
     /// Working memory of [`build_soon`](Self::build_soon).
     items: Vec<Item>,
     stack: Vec<u32>,
+    mirror: Mirror,
 }
 
 /// A tree is built anew when its boxes have grown to this part of those of a new one.
@@ -79,6 +82,7 @@ impl DynamicTree {
 
     /// Empties the tree to build it over these payloads; whether there are any.
     fn start(&mut self, payloads: impl ExactSizeIterator<Item = u32>) -> bool {
+        self.mirror.drop_copy();
         self.nodes.clear();
         self.parents.clear();
         self.free.clear();
@@ -178,6 +182,7 @@ impl DynamicTree {
 
     /// Adds a leaf. The payload must not be in the tree.
     pub fn insert(&mut self, payload: u32, bounds: &Box32) {
+        self.mirror.drop_copy();
         self.grow_leaves(payload);
         self.count += 1;
         if self.count == 1 {
@@ -207,6 +212,7 @@ impl DynamicTree {
         if i == NONE {
             return;
         }
+        self.mirror.drop_copy();
         self.count -= 1;
         if i == 0 {
             return;
@@ -261,6 +267,7 @@ impl DynamicTree {
 
     /// Gives a leaf of the tree another box.
     fn change(&mut self, payload: u32, bounds: &Box32) {
+        self.mirror.drop_copy();
         let i = self.leaves[payload as usize];
         let sibling = self.nodes.bounds(i ^ 1);
         if i != 0 {
@@ -358,10 +365,29 @@ impl DynamicTree {
 
     /// Calls `found` with the payload of each leaf whose box overlaps `bounds`.
     #[inline]
-    pub fn query(&self, bounds: &Box32, found: impl FnMut(u32)) {
-        if self.count > 0 && self.nodes.bounds(0).overlaps(bounds) {
+    pub fn query(&self, bounds: &Box32, mut found: impl FnMut(u32)) {
+        if self.count == 0 || !self.nodes.bounds(0).overlaps(bounds) {
+            return;
+        }
+        if let Some(wide) = self.wide(Search::Query) {
+            wide.query(bounds, |payload, _| found(payload));
+        } else {
             self.descend(|c| self.nodes.pair(c).overlaps(bounds), found);
         }
+    }
+
+    /// The tree with four boxes to a node, if that is worth while.
+    #[inline]
+    fn wide(&self, search: Search) -> Option<&WideTree> {
+        let part = |i: u32| {
+            let node = self.nodes.get(i);
+            Part { bounds: node.bounds, leaf: node.is_leaf().then_some((node.tag, 1)), of: i }
+        };
+        let open = |i: u32| {
+            let (child, _) = self.nodes.numbers(i);
+            [part(child), part(child + 1)]
+        };
+        self.mirror.get(search, self.count, || part(0), open)
     }
 
     /// Visits the leaves below the root that `test` lets through, two siblings at a time.
@@ -392,8 +418,12 @@ impl DynamicTree {
     /// Calls `found` with the payload of each leaf that the probe meets within the limit, nearer ones first as far as
     /// the boxes tell. `found` may lower the limit.
     #[inline]
-    pub fn seek(&self, probe: &Probe, limit: &mut f64, found: impl FnMut(u32, &mut f64)) {
+    pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
         if self.count == 0 || probe.enter(&self.nodes.bounds(0), *limit).is_none() {
+            return;
+        }
+        if let Some(wide) = self.wide(Search::Seek) {
+            wide.seek(probe, limit, |payload, _, limit| found(payload, limit));
             return;
         }
         match probe.lanes(&self.nodes.bounds(0)) {
@@ -493,6 +523,8 @@ fn cross(
 mod tests {
     use super::*;
     use ferrode_math::random::OdeRandom;
+    use ferrode_math::{Aabb, Vec3};
+    use std::collections::BTreeSet;
 
     /// Leaves that go their own ways, none of them far in a step.
     #[test]
@@ -528,5 +560,70 @@ mod tests {
         tree.walk(|_| true, |payload| found.push(payload));
         found.sort_unstable();
         assert!(found.into_iter().eq(0..400));
+    }
+
+    #[test]
+    fn a_wide_copy_finds_the_same() {
+        let mut random = OdeRandom::new(2);
+        let mut number = || f64::from(random.next_u32()) / 4294967296.0;
+        let mut vector = |size: f64| Vec3::new(number() - 0.5, number() - 0.5, number() - 0.5) * size;
+        for count in [1u32, 2, 3, 5, 300] {
+            let boxes: Vec<Aabb> =
+                (0..count).map(|_| Aabb::from_center(vector(20.0), vector(2.0).abs())).collect();
+            let mut items: Vec<_> = (0..count).map(|i| (i, Box32::around(&boxes[i as usize]))).collect();
+            let mut tree = DynamicTree::default();
+            tree.build(&mut items);
+            for _ in 0..60 {
+                let (at, path) = (vector(24.0), vector(30.0));
+                let around = Aabb::from_center(at, vector(8.0).abs());
+                let list = |tree: &DynamicTree| {
+                    let mut found = Vec::new();
+                    tree.query(&Box32::around(&around), |i| found.push(i));
+                    found
+                };
+                let (binary, asked) = (tree.clone(), tree.clone());
+                (0..=count).for_each(|_| asked.query(&items[0].1, |_| {}));
+                assert!(asked.wide(Search::Query).is_some() && binary.wide(Search::Query).is_none());
+                assert_eq!(list(&asked), list(&binary));
+                let along_axis = Vec3::new(0.0, path.y, 0.0);
+                for probe in [
+                    Probe::ray(at, path),
+                    Probe::ray(at, along_axis),
+                    Probe::sweep(&around, path),
+                    Probe::sweep(&around, along_axis),
+                    Probe::near(&around),
+                ] {
+                    for most in [1.0, 0.3, f64::INFINITY] {
+                        let met = |i: u32| probe.enter_aabb(&boxes[i as usize], most);
+                        let mut missing: BTreeSet<u32> = (0..count).filter(|&i| met(i).is_some()).collect();
+                        let first = missing.iter().filter_map(|&i| met(i)).min_by(f64::total_cmp);
+                        for tree in [&asked, &binary] {
+                            let (mut limit, mut nearest) = (most, None);
+                            tree.seek(&probe, &mut limit, |i, limit| {
+                                if let Some(at) = met(i).filter(|at| at <= limit) {
+                                    (*limit, nearest) = (at, Some(at));
+                                }
+                            });
+                            assert_eq!(nearest, first);
+                        }
+                        asked.seek(&probe, &mut { most }, |i, _| {
+                            missing.remove(&i);
+                        });
+                        assert!(missing.is_empty(), "{count} {probe:?} {missing:?}");
+                    }
+                }
+            }
+            let mut all = Vec::new();
+            (0..=count).for_each(|_| tree.query(&items[0].1, |_| {}));
+            tree.query(&Box32 { min: [f32::NEG_INFINITY; 3], max: [f32::INFINITY; 3] }, |i| all.push(i));
+            all.sort_unstable();
+            assert!(all.into_iter().eq(0..count));
+            // A change is not lost on the copy.
+            (0..=count).for_each(|_| tree.query(&items[0].1, |_| {}));
+            tree.change(0, &Box32 { min: [90.0; 3], max: [91.0; 3] });
+            let mut found = Vec::new();
+            tree.query(&Box32 { min: [90.5; 3], max: [90.6; 3] }, |i| found.push(i));
+            assert_eq!(found, [0]);
+        }
     }
 }

@@ -9,6 +9,7 @@ mod bvh;
 pub(crate) mod dynamic_tree;
 pub(crate) mod f32_box;
 mod hash;
+mod mirror;
 mod pair_nodes;
 mod probe;
 mod proxy;
@@ -16,6 +17,7 @@ mod quadtree;
 mod simple;
 mod sweep_and_prune;
 pub mod tree;
+mod wide;
 
 use ferrode_math::Aabb;
 

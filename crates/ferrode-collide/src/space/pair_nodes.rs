@@ -62,24 +62,10 @@ impl Nodes {
         self.pairs.is_empty()
     }
 
-    /// The highest number of a node.
-    pub fn last(&self) -> Option<u32> {
-        (2 * self.pairs.len() as u32).checked_sub(1)
-    }
-
     /// Adds a pair of nodes that overlap nothing, and returns the first.
     pub fn add_pair(&mut self) -> u32 {
         self.pairs.push(Self::VACANT);
         2 * (self.pairs.len() as u32 - 1)
-    }
-
-    pub fn shrink_to_fit(&mut self) {
-        self.pairs.shrink_to_fit();
-    }
-
-    /// Bytes in use.
-    pub fn size(&self) -> usize {
-        self.pairs.capacity() * size_of::<PairNode>()
     }
 
     /// The pair whose first node is `i`.

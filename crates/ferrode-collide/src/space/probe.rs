@@ -2,6 +2,7 @@
 
 use super::f32_box::{Box32, Pending, down};
 use super::pair_nodes::PairNode;
+use super::wide::{Entry, Four};
 use ferrode_math::{Aabb, Vec3};
 
 /// More than the rounding of a difference, a reciprocal and a product.
@@ -118,10 +119,20 @@ impl Probe {
         (at.map(|x| x.is_some()), at.map(|x| down(x.unwrap_or(0.0))))
     }
 
-    /// The ray for boxes in single precision within `all`; `None` if this is no ray, or one for which that is too little.
+    /// As [`enter_bounds`](Self::enter_bounds) for four boxes.
+    #[inline(always)]
+    pub(crate) fn enter_four(&self, four: &Four, limit: f64) -> [Entry; 4] {
+        [0, 1, 2, 3].map(|l| {
+            let at = if four.is_vacant(l) { None } else { self.enter(&four.bounds(l), limit) };
+            at.map_or(Entry::MISSED, |at| Entry::new(down(at), l))
+        })
+    }
+
+    /// The ray or path for boxes in single precision within `all`; `None` if this is neither, or single precision is too
+    /// little for it.
     #[inline]
     pub(crate) fn lanes(&self, all: &Box32) -> Option<RayLanes> {
-        if self.kind != Kind::Ray {
+        if self.kind == Kind::Near {
             return None;
         }
         let mut lanes = RayLanes { origin: [[0.0; 4]; 3], inverse: [[0.0; 4]; 3], near: [0; 3] };
@@ -131,13 +142,14 @@ impl Probe {
             let sign = if inverse < 0.0 { -1.0 } else { 1.0 };
             // Rounding of the origin and of differences from it, as a length.
             let reach = self.origin[i].abs() + f64::from(all.min[i].abs().max(all.max[i].abs()));
-            let pad = reach * ROUNDING * sign;
+            // A box that moves is a ray among boxes that are larger by it.
+            let pad = (self.half[i] + (reach + self.half[i]) * ROUNDING) * sign;
             let (near, far) = ((self.origin[i] + pad) as f32, (self.origin[i] - pad) as f32);
             let inverse = inverse as f32;
             lanes.origin[i] = [near, near, far, far];
             lanes.inverse[i] = [inverse, inverse, -inverse, -inverse];
             lanes.near[i] = usize::from(sign < 0.0);
-            if !(near.is_finite() && far.is_finite() && inverse != 0.0) {
+            if !(near.is_finite() && far.is_finite() && inverse.is_finite() && inverse != 0.0) {
                 return None;
             }
         }
@@ -163,13 +175,15 @@ fn greater(a: f64, b: f64) -> f64 {
 
 /// More than the relative rounding of a few operations in single precision.
 const ROUNDING: f64 = 1.0 / (1u64 << 21) as f64;
+/// What is left is multiplied by it.
+const WIDER: f32 = 1.0 + 4.0 * ROUNDING as f32;
 /// The largest reciprocal of a ray's direction in single precision: differences of coordinates times it stay finite.
 const STEEPEST: f64 = 1e28;
 
-/// A ray against two boxes at once, in single precision: lanes for where it enters either, and for minus where it leaves.
-/// Errs on the side of meeting.
+/// A ray against two or four boxes at once, in single precision. Errs on the side of meeting.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RayLanes {
+    /// Two lanes for where boxes are entered, two for where they are left, of which everything has the other sign.
     origin: [[f32; 4]; 3],
     inverse: [[f32; 4]; 3],
     /// Along each axis the side that the ray meets first.
@@ -180,7 +194,6 @@ impl RayLanes {
     /// Whether each is met within `limit`, and where, rounded down.
     #[inline(always)]
     pub fn enter_pair(&self, pair: &PairNode, limit: f32) -> ([bool; 2], [f32; 2]) {
-        const WIDER: f32 = 1.0 + 4.0 * ROUNDING as f32;
         let mut at = [0.0, 0.0, -limit, -limit];
         for i in 0..3 {
             let sides = &pair.sides[i];
@@ -194,6 +207,27 @@ impl RayLanes {
         // Neither entry is negative.
         let met = [0, 1].map(|l| at[l] <= -at[l + 2] * WIDER);
         (met, [at[0] * (2.0 - WIDER), at[1] * (2.0 - WIDER)])
+    }
+
+    /// As [`enter_pair`](Self::enter_pair) for four.
+    #[inline(always)]
+    pub fn enter_four(&self, four: &Four, limit: f32) -> [Entry; 4] {
+        let (mut enter, mut leave) = ([0.0f32; 4], [limit; 4]);
+        for i in 0..3 {
+            let (sides, side) = (&four.sides[i], self.near[i] & 1);
+            let (near, far) = (&sides[side], &sides[side ^ 1]);
+            let (from, to, inverse) = (self.origin[i][0], self.origin[i][2], self.inverse[i][0]);
+            for l in 0..4 {
+                let (x, y) = ((near[l] - from) * inverse, (far[l] - to) * inverse);
+                enter[l] = if x > enter[l] { x } else { enter[l] };
+                leave[l] = if y < leave[l] { y } else { leave[l] };
+            }
+        }
+        [0, 1, 2, 3].map(|l| {
+            // No entry is negative.
+            let met = enter[l] <= leave[l] * WIDER;
+            if met { Entry::new(enter[l] * (2.0 - WIDER), l) } else { Entry::MISSED }
+        })
     }
 
     /// A limit in single precision, not below the one given.

@@ -1,10 +1,10 @@
-//! A binary tree over boxes that stay: the triangles of a mesh.
+//! A tree over boxes that stay: the triangles of a mesh.
 
 mod refit;
 
-use super::f32_box::{Box32, Pending};
-use super::pair_nodes::{Node, Nodes, PairNode};
-use super::probe::{Probe, RayLanes, nearer};
+use super::f32_box::Box32;
+use super::probe::Probe;
+use super::wide::{Part, WideTree};
 use ferrode_math::Aabb;
 
 /// Most items in a leaf. Four triangles are tested as fast as the three more boxes that would tell them apart.
@@ -13,13 +13,12 @@ const LEAF: usize = 4;
 const BINS: usize = 16;
 
 /// A tree over bounded boxes, numbered as they were given; built once, by the surface area heuristic (Wald, *On fast
-/// construction of SAH-based bounding volume hierarchies*, 2007). Boxes are rounded outwards to single precision; with
-/// its list of items the tree takes 20 to 40 bytes a box.
+/// construction of SAH-based bounding volume hierarchies*, 2007), four boxes to a node. Boxes are rounded outwards to single
+/// precision; with its list of items the tree takes 20 to 40 bytes a box.
 #[derive(Clone, Debug, Default)]
 pub struct AabbTree {
-    /// Node 0 is the root, node 1 is never used. Links are the first of two children, or of the items of a leaf; tags
-    /// the number of items, zero for an inner node.
-    nodes: Nodes,
+    /// Leaves are parts of the list of items: the first, and how many.
+    nodes: WideTree,
     items: Vec<u32>,
 }
 
@@ -32,22 +31,15 @@ impl AabbTree {
         if items.is_empty() {
             return tree;
         }
-        tree.nodes.add_pair();
-        // Node and its part of the items.
-        let mut waiting = vec![(0u32, 0usize, items.len())];
-        while let Some((node, start, end)) = waiting.pop() {
-            let part = &mut items[start..end];
-            let bounds = part.iter().fold(Box32::EMPTY, |b, i| b.union(&i.1));
-            let (link, tag) = if part.len() <= LEAF {
-                (start as u32, part.len() as u32)
-            } else {
-                let middle = start + split(part);
-                let child = tree.nodes.add_pair();
-                waiting.extend([(child, start, middle), (child + 1, middle, end)]);
-                (child, 0)
-            };
-            tree.nodes.set(node, Node { bounds, link, tag });
-        }
+        let part = |items: &[(u32, Box32)], start: usize, end: usize| Part {
+            bounds: items[start..end].iter().fold(Box32::EMPTY, |b, i| b.union(&i.1)),
+            leaf: (end - start <= LEAF).then_some((start as u32, (end - start) as u32)),
+            of: (start, end),
+        };
+        tree.nodes.build(part(&items, 0, items.len()), |(start, end)| {
+            let middle = start + split(&mut items[start..end]);
+            [part(&items, start, middle), part(&items, middle, end)]
+        });
         tree.items = items.into_iter().map(|i| i.0).collect();
         tree.nodes.shrink_to_fit();
         tree
@@ -65,65 +57,18 @@ impl AabbTree {
     /// Calls `found` with the number of each box that overlaps `aabb`, and a few that lie beside these.
     #[inline]
     pub fn query(&self, aabb: &Aabb, mut found: impl FnMut(u32)) {
-        let around = Box32::around(aabb);
-        if self.nodes.is_empty() || !self.nodes.bounds(0).overlaps(&around) {
-            return;
-        }
-        let mut pending: Pending<u32> = Pending::new();
-        pending.push(0);
-        while let Some(i) = pending.pop() {
-            let (link, count) = self.nodes.numbers(i);
-            if count > 0 {
-                self.items(link, count).iter().for_each(|&item| found(item));
-            } else {
-                let [a, b] = self.nodes.pair(link).overlaps(&around);
-                pending.push_if(b, link + 1);
-                pending.push_if(a, link);
-            }
-        }
+        self.nodes.query(&Box32::around(aabb), |first, count| {
+            self.items(first, count).iter().for_each(|&item| found(item));
+        });
     }
 
     /// Calls `found` with the number of each box that the probe meets within the limit, and a few beside these, nearer
     /// ones first as far as their boxes tell. `found` may lower the limit.
     #[inline]
-    pub fn seek(&self, probe: &Probe, limit: &mut f64, found: impl FnMut(u32, &mut f64)) {
-        if self.nodes.is_empty() || probe.enter(&self.nodes.bounds(0), *limit).is_none() {
-            return;
-        }
-        match probe.lanes(&self.nodes.bounds(0)) {
-            Some(lanes) => self.seek_by(limit, found, |pair, _, near| lanes.enter_pair(pair, near)),
-            None => self.seek_by(limit, found, |pair, limit, _| probe.enter_pair(pair, limit)),
-        }
-    }
-
-    /// `enter` tells for a pair of nodes, the limit and the limit in single precision which of the two are met, and where.
-    #[inline(always)]
-    fn seek_by(
-        &self,
-        limit: &mut f64,
-        mut found: impl FnMut(u32, &mut f64),
-        enter: impl Fn(&PairNode, f64, f32) -> ([bool; 2], [f32; 2]),
-    ) {
-        let mut pending: Pending<(u32, f32)> = Pending::new();
-        let mut near = RayLanes::limit(*limit);
-        let mut i = 0;
-        loop {
-            let (link, count) = self.nodes.numbers(i);
-            let mut next = None;
-            if count > 0 {
-                self.items(link, count).iter().for_each(|&item| found(item, limit));
-                near = RayLanes::limit(*limit);
-            } else {
-                next = nearer(link, enter(self.nodes.pair(link), *limit, near), &mut pending);
-            }
-            while next.is_none() {
-                let Some((waiting, at)) = pending.pop() else { return };
-                if at <= near {
-                    next = Some(waiting);
-                }
-            }
-            i = next.unwrap_or(0);
-        }
+    pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
+        self.nodes.seek(probe, limit, |first, count, limit| {
+            self.items(first, count).iter().for_each(|&item| found(item, limit));
+        });
     }
 }
 

@@ -9,18 +9,11 @@ impl AabbTree {
     /// Linear in the number of items. A tree whose items have moved far from their neighbours finds the same items, but
     /// looks at more; [`AabbTree::build`] it anew then.
     pub fn refit(&mut self, around: impl Fn(u32) -> Aabb) {
-        let Some(last) = self.nodes.last() else { return };
-        // Children come after their parent, so all boxes below a node are done before it. Node 1 is vacant.
-        for i in (0..=last).rev().filter(|&i| i != 1) {
-            let (link, count) = self.nodes.numbers(i);
-            let bounds = if count > 0 {
-                let items = self.items(link, count).iter();
-                Box32::around(&items.fold(Aabb::EMPTY, |all, &item| all.union(&around(item))))
-            } else {
-                self.nodes.joint(link)
-            };
-            self.nodes.set_bounds(i, &bounds);
-        }
+        let Self { nodes, items } = self;
+        nodes.refit(|first, count| {
+            let items = items[first as usize..(first + count) as usize].iter();
+            Box32::around(&items.fold(Aabb::EMPTY, |all, &item| all.union(&around(item))))
+        });
     }
 }
 
