@@ -149,30 +149,44 @@ fn broad(count: usize, speed: f64, steps: usize) -> Result<String, Box<dyn Error
 /// One engine's answer to a ray: the distance of the first hit.
 type Cast<'a> = Box<dyn FnMut(Vec3, Vec3) -> Option<f64> + 'a>;
 
-/// Asks all engines the same rays in turns of 500; a slow one is only asked the first few turns.
+/// Asks all engines the same rays in short turns, in which they mostly fetch their trees from memory again, and in long ones;
+/// a slow one is only asked the first few rays.
 fn ask(title: &str, rays: &[(Vec3, Vec3)], engines: &mut [(&str, bool, Cast<'_>)]) -> String {
+    [500, 20_000].map(|turn| ask_in_turns(turn, title, rays, engines)).concat()
+}
+
+fn ask_in_turns(
+    length: usize,
+    title: &str,
+    rays: &[(Vec3, Vec3)],
+    engines: &mut [(&str, bool, Cast<'_>)],
+) -> String {
     let mut times = vec![Vec::new(); engines.len()];
     let mut sums = vec![(0usize, 0.0f64, 0usize); engines.len()];
-    for (turn, part) in rays.chunks(500).enumerate() {
+    for (turn, part) in rays.chunks(length).enumerate() {
         for (k, (_, slow, cast)) in engines.iter_mut().enumerate() {
-            if *slow && turn >= 4 {
+            if *slow && turn * length >= 2000 {
                 continue;
             }
+            let part = if *slow { &part[..part.len().min(500)] } else { part };
             let sum = &mut sums[k];
-            times[k].push(seconds(|| {
+            let time = seconds(|| {
                 for (from, direction) in part {
                     if let Some(d) = cast(*from, *direction) {
                         *sum = (sum.0 + 1, sum.1 + d, sum.2);
                     }
                 }
-            }));
+            });
+            times[k].push(time / part.len() as f64);
             sum.2 += part.len();
         }
     }
-    let mut text = format!("{title}\n\n| engine | µs a ray | hit | mean distance, m |\n|---|---|---|---|\n");
+    let mut text = format!(
+        "{title}, {length} at a time\n\n| engine | µs a ray | hit | mean distance, m |\n|---|---|---|---|\n"
+    );
     for (k, (name, ..)) in engines.iter().enumerate() {
         let (hits, sum, asked) = sums[k];
-        let us = median(&mut times[k]) / 500.0 * 1e6;
+        let us = median(&mut times[k]) * 1e6;
         text += &format!(
             "| {name} | {us:.3} | {:.2} % | {:.4} |\n",
             100.0 * hits as f64 / asked as f64,

@@ -24,7 +24,7 @@ pub struct CastHit {
 }
 
 /// Of a field without end: cells along either axis below the body that a cast looks at, those below its middle, and how
-/// many cells in all.
+/// many cells in all, where one that passes over its block counts for all of it.
 const MOST_ACROSS: f64 = 32.0;
 const MOST_CELLS: usize = 1 << 16;
 
@@ -253,7 +253,7 @@ impl CastHit {
 /// Where shape `a`, moving along `path` without turning, first touches `b`, to a few millionths of their sizes.
 /// `None` if it does not, for rays, for two planes, and for a path that is not finite. Meshes and heightfields are their
 /// surfaces. Of a heightfield without end it looks at what lies below the middle 32 cells of the other shape, along a path of
-/// some thousands of cells; with a plane or another such field there is no answer.
+/// some thousands of cells, or of some hundred thousands over plains; with a plane or another such field there is no answer.
 ///
 /// A shape of one's own takes part if it has a [support function](crate::CustomShape::support) or knows its
 /// [distance](crate::CustomShape::distance) from the other shape.

@@ -2,10 +2,10 @@
 
 use crate::{Contacts, GeomContact};
 
-/// Contacts of one place and normal are one: the deeper stays. Then, if there are more than wanted, the deepest and
+/// Contacts of one place and normal are one: the deeper stays, of equals the first, whatever rounding makes of them. Then, if there are more than wanted, the deepest and
 /// those that differ most, in place and normal, from the ones that stay. `size` is that of the smaller body.
 pub(crate) fn reduce(out: &mut Contacts<'_>, size: f64) {
-    let near = 1e-4 * size;
+    let (near, equal) = (1e-4 * size, 1e-12 * size);
     let wanted = out.capacity();
     let list = out.added();
     let mut count = 0;
@@ -17,7 +17,7 @@ pub(crate) fn reduce(out: &mut Contacts<'_>, size: f64) {
         });
         match twin {
             Some(k) => {
-                if c.point.depth > k.point.depth {
+                if c.point.depth > k.point.depth + equal {
                     *k = c;
                 }
             }

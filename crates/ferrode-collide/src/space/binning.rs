@@ -57,10 +57,7 @@ pub(super) fn split(items: &mut [Item]) -> usize {
     }
     let mut centers = NOTHING;
     for i in items.iter() {
-        let mut c = [0.0; 4];
-        for k in 0..4 {
-            c[k] = i.low[k] + i.high[k];
-        }
+        let c = core::array::from_fn(|k| i.low[k] + i.high[k]);
         grow(&mut centers, &c, &c);
     }
     let extent = [0, 1, 2].map(|k| centers.1[k] - centers.0[k]);
@@ -69,11 +66,7 @@ pub(super) fn split(items: &mut [Item]) -> usize {
     } else {
         1 + usize::from(extent[2] > extent[1])
     };
-    let bins = match count {
-        ..=8 => 4,
-        ..=64 => 8,
-        _ => BINS,
-    };
+    let bins = if count > 64 { BINS } else { 4 << usize::from(count > 8) };
     let (start, scale) = (centers.0[axis], bins as f32 / extent[axis]);
     if !(scale.is_finite() && scale > 0.0) {
         return count / 2;

@@ -3,9 +3,9 @@
 use super::f32_box::{Box32, Pending};
 use super::probe::{Probe, RayLanes};
 
-/// Four boxes side by side, and what each holds.
+/// Four boxes side by side, and what each holds: two cache lines, which processors fetch together.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
+#[repr(C, align(128))]
 pub(crate) struct Four {
     /// Along each axis the lower sides of the four, then the upper ones.
     pub sides: [[[f32; 4]; 2]; 3],
