@@ -30,6 +30,8 @@ pub struct BvhSpace {
     /// Marked since the last update.
     moved: Vec<ProxyId>,
     unbounded: Vec<ProxyId>,
+    /// A bit a proxy: whether it may be switched off. Who has none need not be looked up in the table.
+    off: Vec<u64>,
     next_rank: u64,
     near: Vec<Pair>,
     /// Working memory of the update.
@@ -98,6 +100,25 @@ impl BvhSpace {
 
     fn entry(&self, id: ProxyId) -> &Entry {
         &self.entries[id.0 as usize]
+    }
+
+    /// Notes whether a proxy may be switched off.
+    fn note_off(&mut self, id: ProxyId, off: bool) {
+        let (word, bit) = ((id.0 >> 6) as usize, 1 << (id.0 & 63));
+        if word >= self.off.len() {
+            self.off.resize(word + 1, 0);
+        }
+        if off {
+            self.off[word] |= bit;
+        } else {
+            self.off[word] &= !bit;
+        }
+    }
+
+    #[inline]
+    fn is_enabled(&self, table: &ProxyTable, id: ProxyId) -> bool {
+        let may_be_off = self.off.get((id.0 >> 6) as usize).is_none_or(|w| w >> (id.0 & 63) & 1 != 0);
+        !may_be_off || table.get(id).enabled
     }
 
     fn mark(&mut self, id: ProxyId) {
@@ -248,6 +269,7 @@ fn merge<'a>(
 impl BroadPhase for BvhSpace {
     fn insert(&mut self, table: &mut ProxyTable, id: ProxyId) {
         self.members.push_front(table, id);
+        self.note_off(id, !table.get(id).enabled);
         let i = id.0 as usize;
         if i >= self.entries.len() {
             self.entries.resize(i + 1, ABSENT);
@@ -266,6 +288,10 @@ impl BroadPhase for BvhSpace {
     /// The list stays as it is: to reorder it costs more than all else that moving a geom does.
     fn moved(&mut self, _: &mut ProxyTable, id: ProxyId) {
         self.mark(id);
+    }
+
+    fn switched(&mut self, id: ProxyId) {
+        self.note_off(id, true);
     }
 
     fn marked(&self) -> Option<&[ProxyId]> {
@@ -357,18 +383,22 @@ impl BroadPhase for BvhSpace {
         limit: &mut f64,
         report: &mut dyn FnMut(ProxyId, &mut f64),
     ) {
-        let mut consider = |id: ProxyId, tight: bool, limit: &mut f64| {
+        let mut consider = |id: ProxyId, limit: &mut f64| {
             let member = table.get(id);
             // Leaves of what moves are larger than the geom: look at its own box before its shape is asked.
-            if member.enabled && (tight || probe.enter_aabb(&member.aabb, *limit).is_some()) {
+            if member.enabled && probe.enter_aabb(&member.aabb, *limit).is_some() {
                 report(id, limit);
             }
         };
         for &id in &self.unbounded {
-            consider(id, false, limit);
+            consider(id, limit);
         }
-        self.still.seek(probe, limit, |id, limit| consider(ProxyId(id), true, limit));
-        self.moving.seek(probe, limit, |id, limit| consider(ProxyId(id), false, limit));
+        self.moving.seek(probe, limit, |id, limit| consider(ProxyId(id), limit));
+        self.still.seek(probe, limit, |id, limit| {
+            if self.is_enabled(table, ProxyId(id)) {
+                report(ProxyId(id), limit);
+            }
+        });
     }
 
     fn members(&self) -> &Members {

@@ -53,7 +53,7 @@ pub trait BroadPhase {
         proxy: &Proxy,
         report: &mut dyn FnMut(ProxyId),
     );
-    /// Notes that a member was switched on or off.
+    /// Notes that a member was switched on or off: to be called whenever [`Proxy::enabled`] has changed.
     fn switched(&mut self, _id: ProxyId) {}
     /// Reports every enabled member whose box passes `test`. If a box passes, so must all boxes around it.
     fn visit(&self, table: &ProxyTable, test: &dyn Fn(&Aabb) -> bool, report: &mut dyn FnMut(ProxyId)) {
