@@ -113,6 +113,20 @@ pub(super) struct JointContext {
     pub soft: Coefficients,
     /// Of this step to the one before, in length.
     pub ratio: f32,
+    /// Length of a substep.
+    part: f64,
+    /// What the CFM of a row with the world's ERP adds to the diagonal, as a multiple of that CFM.
+    give: f64,
+    /// At which articulations correct errors, 1/s.
+    exact_rate: f64,
+}
+
+impl JointContext {
+    pub fn new(step: StepContext, substeps: f64, soft: Coefficients, ratio: f32) -> Self {
+        let part = step.h / substeps;
+        let give = Softness { erp: step.erp, cfm: 1.0 }.at_substep(substeps).cfm / part;
+        Self { step, substeps, soft, ratio, part, give, exact_rate: EXACT_RATE / part }
+    }
 }
 
 impl Joints {
@@ -389,25 +403,29 @@ impl JointRow {
         };
         let still = drift(places[0], row.linear1, row.angular1) + drift(places[1], row.linear2, row.angular2);
 
-        let (n, step) = (context.substeps, &context.step);
-        let h = step.h / n;
+        let step = &context.step;
+        let h = context.part;
         // What of c corrects the position, and what is a wanted velocity.
         let bounces = row.restitution_target != 0.0 && row.c == row.restitution_target;
         let velocity = if bounces { row.c } else { row.velocity_target };
         let error = row.position_error;
         let own = row.kind != RowKind::Motor && row.cfm > step.cfm.max(1e-9);
-        let erp = if error != 0.0 { (row.c - velocity) * step.h / error } else { step.erp };
-        let part = Softness { erp, cfm: row.cfm }.at_substep(n);
-        let rate = if own {
-            part.erp / h
+        let (rate, most, gamma) = if own {
+            let erp = if error != 0.0 { (row.c - velocity) * step.h / error } else { step.erp };
+            let part = Softness { erp, cfm: row.cfm }.at_substep(context.substeps);
+            (part.erp / h, f64::INFINITY, part.cfm / h)
         } else if constraint.exact {
-            EXACT_RATE / h
+            (context.exact_rate, EXACT_SPEED, row.cfm.max(0.0) * context.give)
         } else {
-            f64::from(context.soft.bias_rate)
+            (f64::from(context.soft.bias_rate), f64::INFINITY, row.cfm.max(0.0) * context.give)
         };
-        let most = if constraint.exact { EXACT_SPEED } else { f64::INFINITY };
-        let gamma = (part.cfm / h) as f32;
-        let k = dot(&jacobian[0], &jacobian[0]) + dot(&jacobian[1], &jacobian[1]) + gamma;
+        let gamma = gamma as f32;
+        // An articulation has a matrix of its own.
+        let k = if constraint.exact {
+            0.0
+        } else {
+            dot(&jacobian[0], &jacobian[0]) + dot(&jacobian[1], &jacobian[1]) + gamma
+        };
         Self {
             jacobian,
             mass: if k > 0.0 { 1.0 / k } else { 0.0 },

@@ -375,12 +375,7 @@ impl World {
                 ratio,
             },
         );
-        let context = JointContext {
-            step: self.step_context(h),
-            substeps: n,
-            soft: settings.joint.coefficients(part),
-            ratio,
-        };
+        let context = JointContext::new(self.step_context(h), n, settings.joint.coefficients(part), ratio);
         joints.begin(bodies, &self.bodies);
         articulations.find(level, joints, bodies);
         self.timing.spent_on(Phase::Assembly);

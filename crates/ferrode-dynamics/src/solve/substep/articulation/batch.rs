@@ -94,35 +94,29 @@ impl<L: Lanes> LaneRow<L> {
 
     #[inline(always)]
     fn jacobian(&self) -> [[L; 6]; 2] {
-        [0, 1].map(|side| core::array::from_fn(|k| L::load(&self.jacobian[side][k])))
+        [load6(&self.jacobian[0]), load6(&self.jacobian[1])]
     }
 
     /// Scales a Jacobian by the bodies' records of scales.
     #[inline(always)]
     fn scale(&mut self, scales: [&[L; 8]; 2]) {
         for (j, s) in self.jacobian.iter_mut().zip(scales) {
-            let x: [L; 6] = core::array::from_fn(|k| L::load(&j[k]));
+            let x = load6::<L>(j);
             *j = [
-                s[0] * x[0],
-                s[0] * x[1],
-                s[0] * x[2],
-                s[1] * x[3] + s[2] * x[4] + s[4] * x[5],
-                s[3] * x[4] + s[5] * x[5],
-                s[6] * x[5],
-            ]
-            .map(L::store);
+                (s[0] * x[0]).store(),
+                (s[0] * x[1]).store(),
+                (s[0] * x[2]).store(),
+                (s[1] * x[3] + s[2] * x[4] + s[4] * x[5]).store(),
+                (s[3] * x[4] + s[5] * x[5]).store(),
+                (s[6] * x[5]).store(),
+            ];
         }
     }
 
     /// J̃ ũ.
     #[inline(always)]
     fn velocity(&self, u: [&[L; 6]; 2]) -> L {
-        let mut sums = [L::ZERO; 2];
-        for ((sum, j), u) in sums.iter_mut().zip(&self.jacobian).zip(u) {
-            let p: [L; 6] = core::array::from_fn(|k| L::load(&j[k]) * u[k]);
-            *sum = (p[0] + p[1] + p[2]) + (p[3] + p[4] + p[5]);
-        }
-        sums[0] + sums[1]
+        dot6(&load6(&self.jacobian[0]), u[0]) + dot6(&load6(&self.jacobian[1]), u[1])
     }
 
     /// What is left of J̃ ũ − target − bias + Γ λ at an impulse λ.
@@ -150,20 +144,23 @@ impl<L: Lanes> LaneRow<L> {
     #[inline(always)]
     fn push(&self, impulse: L, ends: [u32; 2], yields: &[L], velocities: &mut [[L; 6]]) {
         for (j, body) in self.jacobian.iter().zip(ends) {
-            let turning = impulse * yields[body as usize];
-            for (k, (u, j)) in velocities[body as usize].iter_mut().zip(j).enumerate() {
-                *u += L::load(j) * if k < 3 { impulse } else { turning };
+            let (j, body) = (load6::<L>(j), body as usize);
+            let turning = impulse * yields[body];
+            let u = &mut velocities[body];
+            for k in 0..3 {
+                u[k] += j[k] * impulse;
+                u[k + 3] += j[k + 3] * turning;
             }
         }
     }
 
     /// The Jacobian with the angular parts as they turn the bodies.
     #[inline(always)]
-    fn response(&self, yields: [L; 2]) -> [[L; 6]; 2] {
+    fn response(&self, yields: [&L; 2]) -> [[L; 6]; 2] {
         let mut j = self.jacobian();
         for (j, y) in j.iter_mut().zip(yields) {
             for x in &mut j[3..] {
-                *x *= y;
+                *x *= *y;
             }
         }
         j
@@ -180,6 +177,21 @@ pub(in crate::solve::substep) enum Mode {
     /// Moves the bodies so that errors of position vanish, but for what is of second order in them: a step of Newton's method, with the
     /// least motion in terms of kinetic energy. Only for rows without bounds that are no springs.
     Project,
+}
+
+#[inline(always)]
+fn both<T>(list: &[T], ends: [u32; 2]) -> [&T; 2] {
+    [&list[ends[0] as usize], &list[ends[1] as usize]]
+}
+
+#[inline(always)]
+fn load6<L: Lanes>(b: &[L::Block; 6]) -> [L; 6] {
+    [L::load(&b[0]), L::load(&b[1]), L::load(&b[2]), L::load(&b[3]), L::load(&b[4]), L::load(&b[5])]
+}
+
+#[inline(always)]
+fn dot6<L: Lanes>(a: &[L; 6], b: &[L; 6]) -> L {
+    (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 
 /// Articulations of one shape, as many as there are lanes or fewer.
@@ -209,15 +221,13 @@ pub(super) struct Batch<L: Lanes> {
 }
 
 impl<L: Lanes> Batch<L> {
-    /// An empty one.
-    pub fn new(number: u32, shape: &Shape) -> Self {
-        let mut nobody = L::Index::default();
-        nobody.as_mut().fill(NO_RECORD);
+    /// One without a shape.
+    pub fn new() -> Self {
         Self {
-            shape: number,
+            shape: 0,
             members: 0,
-            bodies: vec![nobody; shape.bodies],
-            joints: vec![NIL; shape.order.len() * L::LANES],
+            bodies: Vec::new(),
+            joints: Vec::new(),
             rows: Vec::new(),
             bounded: Vec::new(),
             factor: Factor::default(),
@@ -229,6 +239,19 @@ impl<L: Lanes> Batch<L> {
             yields: Vec::new(),
             changes: Vec::new(),
         }
+    }
+
+    /// Empties it for articulations of a shape.
+    pub fn reset(&mut self, number: u32, shape: &Shape) {
+        let mut nobody = L::Index::default();
+        nobody.as_mut().fill(NO_RECORD);
+        self.shape = number;
+        self.members = 0;
+        self.bodies.clear();
+        self.bodies.resize(shape.bodies, nobody);
+        self.joints.clear();
+        self.joints.resize(shape.order.len() * L::LANES, NIL);
+        self.written = false;
     }
 
     /// Adds an articulation in the next lane.
@@ -303,8 +326,8 @@ impl<L: Lanes> Batch<L> {
                 let over = |x: L, d: L| L::select(L::ZERO.lt(d), x / d, L::ZERO);
                 let (mut force, mut arms, mut turns) = ([L::ZERO; 3], L::ZERO, L::ZERO);
                 for row in own {
-                    let j = row.jacobian[side].map(|x| L::load(&x));
-                    let unit = [j[0], j[1], j[2]].map(|x| over(x, s[0]));
+                    let j = load6::<L>(&row.jacobian[side]);
+                    let unit = [over(j[0], s[0]), over(j[1], s[0]), over(j[2], s[0])];
                     let present = unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2];
                     for (f, e) in force.iter_mut().zip(unit) {
                         *f += e * L::load(&row.impulse);
@@ -349,7 +372,7 @@ impl<L: Lanes> Batch<L> {
             }
             let ends = shape.ends[joint];
             for (i, row) in own.iter_mut().enumerate() {
-                row.scale(ends.map(|body| &self.scales[body as usize]));
+                row.scale(both(&self.scales, ends));
                 if row.bounded {
                     bounded.push([(first + i) as u32, joint as u32]);
                 }
@@ -426,8 +449,8 @@ impl<L: Lanes> Batch<L> {
         let h = L::splat(h);
         for (index, scales) in self.bodies.iter().zip(&self.scales) {
             let mut delta = L::gather(deltas, index);
-            let [a, b, c, d, e, f, ..] = L::gather(velocities, index).map(|u| u * h);
-            let curve = curve(&delta, &[a, b, c, d, e, f], scales);
+            let [a, b, c, d, e, f, ..] = L::gather(velocities, index);
+            let curve = curve(&delta, &[a * h, b * h, c * h, d * h, e * h, f * h], scales);
             for (d, c) in delta[3..6].iter_mut().zip(curve) {
                 *d += c;
             }
@@ -462,7 +485,7 @@ impl<L: Lanes> Batch<L> {
             let own = &mut rows[factor.offsets[joint] as usize..][..size];
             let block = factor.block(joint as u32, size * size);
             for i in 0..size {
-                let j = own[i].response(shape.ends[joint].map(|body| yields[body as usize]));
+                let j = own[i].response(both(yields, shape.ends[joint]));
                 let diagonal = own[i].velocity([&j[0], &j[1]]);
                 let row = &mut own[i];
                 row.softness = diagonal * L::splat(SOFTNESS);
@@ -476,18 +499,18 @@ impl<L: Lanes> Batch<L> {
             }
         }
         for product in &shape.products {
-            let [a, b] = [product.a, product.b].map(|(joint, side)| {
+            let rows_of = |(joint, side): (u32, u8)| {
                 let (joint, size) = (joint as usize, factor.size(joint as usize));
                 (&rows[factor.offsets[joint] as usize..][..size], usize::from(side))
-            });
+            };
+            let (a, b) = (rows_of(product.a), rows_of(product.b));
             let columns = b.0.len();
             let block = factor.block(product.target, a.0.len() * columns);
             for (row, out) in a.0.iter().zip(block.chunks_exact_mut(columns.max(1))) {
                 let body = shape.ends[product.a.0 as usize][a.1];
-                let j = row.response([yields[body as usize]; 2])[a.1];
+                let j = row.response([&yields[body as usize]; 2])[a.1];
                 for (other, out) in b.0.iter().zip(out) {
-                    let p: [L; 6] = core::array::from_fn(|k| j[k] * L::load(&other.jacobian[b.1][k]));
-                    *out += ((p[0] + p[1] + p[2]) + (p[3] + p[4] + p[5])) * row.free * other.free;
+                    *out += dot6(&j, &load6(&other.jacobian[b.1])) * row.free * other.free;
                 }
             }
         }
@@ -500,7 +523,7 @@ impl<L: Lanes> Batch<L> {
     fn guess(&mut self, shape: &Shape, mode: Mode) {
         for [i, joint] in &self.bounded {
             let row = &mut self.rows[*i as usize];
-            let velocity = row.velocity(shape.ends[*joint as usize].map(|body| &self.before[body as usize]));
+            let velocity = row.velocity(both(&self.before, shape.ends[*joint as usize]));
             let x = L::load(&row.impulse);
             let inside = L::load(&row.lo).lt(x) & x.lt(L::load(&row.hi));
             let free = inside | row.gives_way(x, row.residual(mode, velocity, x));
@@ -525,7 +548,7 @@ impl<L: Lanes> Batch<L> {
         }
         let mut i = 0;
         for joint in 0..shape.ends.len() {
-            let u = shape.ends[joint].map(|body| &velocities[body as usize]);
+            let u = both(velocities, shape.ends[joint]);
             for row in &rows[i..factor.offsets[joint + 1] as usize] {
                 changes[i] = if mode == Mode::Project {
                     L::load(&row.error) * row.free
@@ -554,8 +577,7 @@ impl<L: Lanes> Batch<L> {
         let mut wrong = false;
         for [i, joint] in &self.bounded {
             let row = &mut self.rows[*i as usize];
-            let velocity =
-                row.velocity(shape.ends[*joint as usize].map(|body| &self.velocities[body as usize]));
+            let velocity = row.velocity(both(&self.velocities, shape.ends[*joint as usize]));
             let new = L::load(&row.impulse) + self.changes[*i as usize];
             let takes_part = L::ZERO.lt(row.free);
             let beyond = takes_part & (new.lt(L::load(&row.lo)) | L::load(&row.hi).lt(new));

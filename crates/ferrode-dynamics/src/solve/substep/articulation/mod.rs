@@ -213,13 +213,16 @@ impl Kernel for Run<'_, '_> {
         let Articulations { shapes, members, order, groups, wide, narrow, .. } = self.articulations;
         let place = if self.wide { wide } else { narrow };
         if let Task::Arrange = self.task {
+            let known = place.take().and_then(|b| b.downcast::<Batches<L>>().ok());
+            let mut spare = known.map_or(Vec::new(), |b| b.0).into_iter();
             // One that stands alone takes one lane.
             let mine = groups.iter().filter(|group| self.wide == (group.len() > 1));
             let list: Vec<_> = mine
                 .map(|group| {
                     let number = order[group.start].0;
                     let shape = &shapes[number as usize];
-                    let mut batch = Batch::<L>::new(number, shape);
+                    let mut batch = spare.next().unwrap_or_else(Batch::<L>::new);
+                    batch.reset(number, shape);
                     for (_, member) in &order[group.clone()] {
                         let member = &members[*member as usize];
                         batch.push(shape, &member.bodies, &member.joints);
