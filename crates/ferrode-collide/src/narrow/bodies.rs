@@ -1,5 +1,7 @@
 use super::convex::touch;
 use super::dispatch::apart;
+use super::hull_cuboid::hull_cuboid;
+use super::hull_facet::Axes;
 use super::manifold::add_manifold;
 use super::support::Body;
 use crate::{Contacts, Frame, Shape};
@@ -23,9 +25,13 @@ pub fn convex_bodies(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Con
 
 fn in_order(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
     in_first_frame(fa, fb, out, |fa, fb, out| {
-        if let (Some(a), Some(b)) = (Body::of(a, fa, Vec3::ZERO), Body::of(b, fb, Vec3::ZERO))
-            && let Some(t) = touch(&a, &b)
-        {
+        let (Some(a), Some(b)) = (Body::of(a, fa, Vec3::ZERO), Body::of(b, fb, Vec3::ZERO)) else { return };
+        let found = match hull_cuboid(&a, &b) {
+            Some(Axes::Apart) => None,
+            Some(Axes::Least(t)) => Some(t),
+            Some(Axes::Overlap) | None => touch(&a, &b),
+        };
+        if let Some(t) = found {
             add_manifold(&a, &b, &t, Vec3::ZERO, out);
         }
     });

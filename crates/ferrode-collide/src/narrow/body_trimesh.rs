@@ -1,10 +1,11 @@
 use super::convex::{Touch, touch};
+use super::facet_axes::lift_out;
 use super::manifold::add_manifold;
 use super::ray_trimesh::ray_triangle;
 use super::reduce::reduce;
 use super::sieve::Sieve;
-use super::support::Body;
-use super::triangle::{Facet, body_facet};
+use super::support::{Body, Core};
+use super::triangle::{Facet, near_facet};
 use crate::space::Probe;
 use crate::{Contacts, Frame, GeomContact, Shape, TriMesh};
 use ferrode_math::{Aabb, Vec3};
@@ -27,32 +28,58 @@ impl TriMesh {
 /// Contacts lie on the body. `side2` of one is the triangle. Where there are more contacts than wanted, the deepest and the most different
 /// stay.
 pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
-    // All in the mesh's coordinates.
+    in_mesh(shape, fa, mesh, fm, |body, around| on_surface(body, mesh, around, fm, out));
+}
+
+/// A convex body without a rule of its own, and a mesh: the contacts of [`body_trimesh`], or if it has sunk through the surface
+/// the one that lifts it out.
+pub(super) fn convex_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
+    in_mesh(shape, fa, mesh, fm, |body, around| {
+        on_surface(body, mesh, around, fm, out);
+        if !out.is_empty() {
+            return;
+        }
+        lift_out(body, mesh, around, out);
+        for c in out.added() {
+            c.point.position = fm.point_to_world(c.point.position);
+            c.point.normal = fm.vector_to_world(c.point.normal);
+        }
+    });
+}
+
+/// Calls `find` with a body, and the box around it, in the coordinates of a mesh, unless the two are apart.
+#[inline]
+fn in_mesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, find: impl FnOnce(&Body<'_>, &Aabb)) {
     let reach = shape.reach() * (1.0 + 1e-9);
     let at = fm.point_to_local(fa.position);
     if !mesh.bounds().overlaps(&Aabb::from_center(at, Vec3::splat(reach))) {
         return;
     }
     let local = Frame::new(at, fm.rotation.transpose() * fa.rotation);
-    let Some(body) = Body::of(shape, &local, Vec3::ZERO) else { return };
+    if let Some(body) = Body::of(shape, &local, Vec3::ZERO) {
+        find(&body, &shape.aabb_in(&local));
+    }
+}
+
+fn on_surface(body: &Body<'_>, mesh: &TriMesh, around: &Aabb, fm: &Frame, out: &mut Contacts<'_>) {
     let middle = body.middle();
     {
         let mut all = out.all();
         // That a triangle does not face the middle is seen below; that of the box is another.
-        let (frame, half) = box_around(&body);
+        let (frame, half) = box_around(body);
         let sieve = Sieve::new(mesh, frame, half, true);
-        mesh.tree().query(&shape.aabb_in(&local), |i| {
-            if sieve.sift(i).is_some()
+        mesh.tree().query(around, |i| {
+            if let Some(near) = sieve.sift(i)
                 && let Some(facet) = mesh.facet(i)
             {
-                body_facet(&body, middle, &facet, &mut all);
+                near_facet(body, middle, &facet, near.meets_box, &mut all);
             }
         });
-        drop_long_ways(&body, mesh, &mut all);
+        drop_long_ways(body, mesh, &mut all);
         let found = all.len();
         drop_beyond(mesh, &mut all);
         if found > 0 && all.is_empty() {
-            least_touch(&body, mesh, &local, shape, &mut all);
+            least_touch(body, mesh, around, &mut all);
         }
     }
     reduce(out, body.reach());
@@ -65,7 +92,11 @@ pub fn body_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: 
 }
 
 /// The box around a body along its own axes: where it is, and half its sides.
-fn box_around(body: &Body<'_>) -> (Frame, Vec3) {
+pub(super) fn box_around(body: &Body<'_>) -> (Frame, Vec3) {
+    if let Core::Hull(hull) = body.core {
+        let bounds = hull.bounds();
+        return (Frame::new(body.place(bounds.center()), body.rotation), bounds.extent() * 0.5);
+    }
     let (mut middle, mut half) = (Vec3::ZERO, Vec3::ZERO);
     for k in 0..3 {
         let axis = body.axis(k);
@@ -114,9 +145,9 @@ fn leaves(mesh: &TriMesh, middle: Vec3, normal: Vec3, depth: f64) -> bool {
 
 /// The contact of the triangle that the body leaves soonest, whatever its neighbours say: at a saddle of a surface no
 /// triangle has the direction in which the body leaves among its own.
-fn least_touch(body: &Body<'_>, mesh: &TriMesh, local: &Frame, shape: &Shape, out: &mut Contacts<'_>) {
+fn least_touch(body: &Body<'_>, mesh: &TriMesh, around: &Aabb, out: &mut Contacts<'_>) {
     let mut least: Option<(Touch, u32)> = None;
-    mesh.tree().query(&shape.aabb_in(local), |i| {
+    mesh.tree().query(around, |i| {
         if mesh.normal(i).length_squared() > 0.0
             && let Some(t) = touch(body, &Body::triangle(mesh.corners(i)))
             && least.as_ref().is_none_or(|(best, of)| (t.depth, i) < (best.depth, *of))

@@ -84,7 +84,7 @@ macro_rules! turn {
 
 fn run_mesh(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
     if let Shape::TriMesh(mesh) = b {
-        facet_axes::convex_trimesh(a, fa, mesh, fb, out);
+        body_trimesh::convex_trimesh(a, fa, mesh, fb, out);
     }
 }
 

@@ -9,7 +9,7 @@
 //! ```
 //! Most triangles near a body that touches are done with by the first two tests.
 
-use super::body_trimesh::body_trimesh;
+use super::body_trimesh::box_around;
 use super::convex::touch;
 use super::sieve::{Sieve, Sieved};
 use super::support::Body;
@@ -100,7 +100,7 @@ impl FacetContacts {
 
 /// The corner furthest along `d`, or the middle of the edge if two are as far.
 fn furthest(corners: &[Vec3; 3], d: Vec3) -> Vec3 {
-    let far = corners.map(|p| d.dot(p));
+    let far = [d.dot(corners[0]), d.dot(corners[1]), d.dot(corners[2])];
     let scale = (corners[1] - corners[0]).abs_max() + (corners[2] - corners[0]).abs_max();
     let near = greater(greater(far[0], far[1]), far[2]) - super::triangle::SAME * scale;
     let (mut sum, mut count) = (Vec3::ZERO, 0.0);
@@ -163,7 +163,7 @@ impl LeastOverlap {
         }
         let length = square.sqrt();
         let reach = reach(axis, length);
-        let p = self.corners.map(|v| axis.dot(v));
+        let p = [axis.dot(self.corners[0]), axis.dot(self.corners[1]), axis.dot(self.corners[2])];
         let (low, high) = (lesser(lesser(p[0], p[1]), p[2]), greater(greater(p[0], p[1]), p[2]));
         let (ahead, behind) = (high + reach, reach - low);
         if ahead < 0.0 || behind < 0.0 {
@@ -181,7 +181,8 @@ impl LeastOverlap {
 
     /// How far the triangle reaches along the normal.
     pub fn level(&self) -> f64 {
-        let p = self.corners.map(|v| self.normal.dot(v));
+        let n = self.normal;
+        let p = [n.dot(self.corners[0]), n.dot(self.corners[1]), n.dot(self.corners[2])];
         greater(greater(p[0], p[1]), p[2])
     }
 }
@@ -349,7 +350,12 @@ fn move_down(out: &mut Contacts<'_>, add: impl FnOnce(&mut Contacts<'_>)) {
 /// of the triangle that it leaves soonest. All is in the mesh's coordinates; `aabb` is the body's.
 pub(super) fn lift_out(body: &Body<'_>, mesh: &TriMesh, aabb: &Aabb, out: &mut Contacts<'_>) {
     let mut best: Option<GeomContact> = None;
+    let (frame, half) = box_around(body);
+    let sieve = Sieve::new(mesh, frame, half, true);
     mesh.tree().query(aabb, |i| {
+        if !sieve.sift(i).is_some_and(|near| near.meets_box) {
+            return;
+        }
         let Some(facet) = mesh.facet(i) else { return };
         let n = facet.normal;
         let lowest = body.support(-n) - n * body.margin;
@@ -414,25 +420,5 @@ fn add_distinct(c: GeomContact, out: &mut Contacts<'_>) {
     // One of the two faces the body.
     if !from_behind {
         k.side1 = -1;
-    }
-}
-
-/// A convex body without a rule of its own, and a mesh: the contacts of `body_trimesh`, or if it has sunk through the surface
-/// the one that lifts it out.
-pub(super) fn convex_trimesh(shape: &Shape, fa: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut Contacts<'_>) {
-    body_trimesh(shape, fa, mesh, fm, out);
-    if !out.is_empty() {
-        return;
-    }
-    let at = fm.point_to_local(fa.position);
-    if !mesh.bounds().overlaps(&Aabb::from_center(at, Vec3::splat(shape.reach() * (1.0 + 1e-9)))) {
-        return;
-    }
-    let local = Frame::new(at, fm.rotation.transpose() * fa.rotation);
-    let Some(body) = Body::of(shape, &local, Vec3::ZERO) else { return };
-    lift_out(&body, mesh, &shape.aabb_in(&local), out);
-    for c in out.added() {
-        c.point.position = fm.point_to_world(c.point.position);
-        c.point.normal = fm.vector_to_world(c.point.normal);
     }
 }

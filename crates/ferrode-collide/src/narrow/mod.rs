@@ -39,6 +39,8 @@ mod field_cells;
 mod gjk;
 pub(crate) mod heightfield_shape;
 mod heightfield_trimesh;
+mod hull_cuboid;
+mod hull_facet;
 mod line_gap;
 pub(crate) mod manifold;
 mod merge;

@@ -11,9 +11,10 @@ use ferrode_math::Vec3;
 /// The difference of body and triangle contains the prism between two copies of the triangle, one about the body's lowest
 /// point and one about its middle. If the origin is no nearer to another face of the prism than to the lower one, which
 /// is on the difference's surface, then that one is the way out.
-pub(super) fn over_face(body: &Body<'_>, middle: Vec3, facet: &Facet) -> Option<Touch> {
+///
+/// `core` is the core's lowest point.
+pub(super) fn over_face(body: &Body<'_>, middle: Vec3, facet: &Facet, core: Vec3) -> Option<Touch> {
     let n = facet.normal;
-    let core = body.support(-n);
     // Of the core below the plane.
     let depth = -facet.height(core);
     let spine = middle - core;

@@ -48,8 +48,9 @@ impl<'a> Sieve<'a> {
         if !(depth >= 0.0) {
             return None;
         }
-        let corners = [first, self.mesh.corner(i, 1) - at, self.mesh.corner(i, 2) - at];
-        let own = corners.map(|p| self.frame.vector_to_local(p));
+        // One by one: mapping the array is a call.
+        let local = |p: Vec3| self.frame.vector_to_local(p);
+        let own = [local(first), local(self.mesh.corner(i, 1) - at), local(self.mesh.corner(i, 2) - at)];
         let mut widest = f64::NEG_INFINITY;
         for k in 0..3 {
             let (p, q, r) = (own[0][k], own[1][k], own[2][k]);

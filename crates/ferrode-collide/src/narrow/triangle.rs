@@ -2,6 +2,7 @@
 
 use super::convex::{Touch, touch};
 use super::gjk::{EXACT, Gap, gjk_from};
+use super::hull_facet::{Axes, hull_facet};
 use super::manifold::{add_face_contacts, add_manifold, add_part_over};
 use super::over_face::over_face;
 use super::support::Body;
@@ -60,8 +61,23 @@ const LEAN: f64 = 1e-9;
 /// it lies between those of the two triangles there; else the triangle's own normal counts, with the part of the body's
 /// face that is over the triangle.
 pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Contacts<'_>) {
+    near_facet(body, middle, facet, true, out);
+}
+
+/// As [`body_facet`]; `may_touch` is false if it is known that the two do not meet.
+pub(super) fn near_facet(
+    body: &Body<'_>,
+    middle: Vec3,
+    facet: &Facet,
+    may_touch: bool,
+    out: &mut Contacts<'_>,
+) {
     let n = facet.normal;
-    if !faces(body, middle, facet) {
+    if !(facet.height(middle) >= 0.0) {
+        return;
+    }
+    let lowest = body.support(-n);
+    if !(facet.height(lowest) <= body.margin) {
         return;
     }
     let triangle = Body::triangle(facet.corners);
@@ -69,16 +85,30 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
     // Where the surface goes on beyond every edge without a bend outward, nothing but the face pushes, however deep.
     let inner = facet.neighbours.iter().all(|n| matches!(n, Neighbour::FlatOrConcave));
     if inner && body.margin == 0.0 {
-        match gjk_from(body, &triangle, 0.0, body.center - triangle.center, EXACT) {
-            Gap::Overlap(_) => add_face(body, middle, facet, 0.5, out),
-            _ => add_hidden_contact(body, middle, facet, out),
+        let overlap = || match hull_facet(body, middle, facet, lowest) {
+            Some(axes) => !matches!(axes, Axes::Apart),
+            None => {
+                let start = body.center - triangle.center;
+                matches!(gjk_from(body, &triangle, 0.0, start, EXACT), Gap::Overlap(_))
+            }
+        };
+        if may_touch && overlap() {
+            add_face(body, middle, facet, 0.5, out);
+        } else {
+            add_hidden_contact(body, middle, facet, lowest, out);
         }
         for c in &mut out.added()[first..] {
             c.side2 = facet.index;
         }
         return;
     }
-    match over_face(body, middle, facet).or_else(|| touch(body, &triangle)) {
+    let by_axes = || match hull_facet(body, middle, facet, lowest) {
+        Some(Axes::Apart) => None,
+        Some(Axes::Least(t)) => Some(t),
+        Some(Axes::Overlap) | None => touch(body, &triangle),
+    };
+    let found = if may_touch { over_face(body, middle, facet, lowest).or_else(by_axes) } else { None };
+    match found {
         // Beyond an edge within the surface the neighbour bears the body.
         Some(t) if t.normal.dot(n) > 1.0 - SAME && !at_inner_edge(facet, &t) => {
             add_manifold(body, &triangle, &Touch { normal: n, ..t }, Vec3::ZERO, out);
@@ -87,12 +117,18 @@ pub(crate) fn body_facet(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut
             add_manifold(body, &triangle, &t, Vec3::ZERO, out)
         }
         Some(_) => add_face_contacts(body, &triangle, n, out),
-        None => add_hidden_contact(body, middle, facet, out),
+        None => add_hidden_contact(body, middle, facet, lowest, out),
     }
+    // Other triangles that the body leaves sooner: looked for once.
+    let mut elsewhere = None;
     let mut kept = first;
     for i in first..out.len() {
         let mut c = out.added()[i];
-        if !nearer_elsewhere(body, facet, middle, c.point.normal, c.point.depth) {
+        let on_face = !(c.point.normal.dot(n) < 1.0 - SAME);
+        if !on_face
+            || *elsewhere.get_or_insert_with(|| least_elsewhere(body, facet, middle))
+                >= c.point.depth * (1.0 - 1e-6)
+        {
             c.side2 = facet.index;
             out.added()[kept] = c;
             kept += 1;
@@ -148,19 +184,15 @@ fn faces(body: &Body<'_>, middle: Vec3, facet: &Facet) -> bool {
 /// [`add_hidden_contact`].
 pub(super) fn hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Contacts<'_>) {
     if faces(body, middle, facet) {
-        let first = out.len();
-        add_hidden_contact(body, middle, facet, out);
-        for c in &mut out.added()[first..] {
-            c.side2 = facet.index;
-        }
+        add_hidden_contact(body, middle, facet, body.support(-facet.normal), out);
     }
 }
 
 /// The lowest point of a body that entered the surface over a neighbour and so does not meet this triangle, although it
-/// lies below it.
-fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Contacts<'_>) {
+/// lies below it. `core` is the core's lowest point.
+fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, core: Vec3, out: &mut Contacts<'_>) {
     let n = facet.normal;
-    let lowest = body.support(-n) - n * body.margin;
+    let lowest = core - n * body.margin;
     let (above, depth) = (facet.height(middle), -facet.height(lowest));
     if depth <= 0.0 {
         return;
@@ -174,7 +206,9 @@ fn add_hidden_contact(body: &Body<'_>, middle: Vec3, facet: &Facet, out: &mut Co
             return;
         }
     }
-    out.push(lowest + n * (0.5 * depth), n, depth);
+    let mut c = GeomContact::new(lowest + n * (0.5 * depth), n, depth);
+    c.side2 = facet.index;
+    out.push_contact(c);
 }
 
 /// Whether the body leaves sooner past the triangle beyond a convex edge, which also has its middle before it: then a

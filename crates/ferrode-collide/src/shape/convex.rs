@@ -1,6 +1,7 @@
+use super::skeleton::Skeleton;
 use super::{LARGEST, ShapeError, hull};
 use crate::Frame;
-use ferrode_math::{Aabb, Vec3};
+use ferrode_math::{Aabb, Mat3, Vec3};
 use std::sync::Arc;
 
 /// A convex polyhedron. Copies share their data.
@@ -21,6 +22,10 @@ struct Polyhedron {
     middle: Vec3,
     /// Distance of the furthest corner from the local origin.
     reach: f64,
+    /// The box around it along its own axes.
+    bounds: Aabb,
+    /// If it has few faces.
+    skeleton: Option<Skeleton>,
 }
 
 /// A face of a polyhedron.
@@ -63,6 +68,8 @@ impl Convex {
             volume: 0.0,
             reach: points.iter().map(|p| p.length()).fold(0.0, f64::max),
             middle: points.iter().fold(Vec3::ZERO, |sum, &p| sum + p) / points.len() as f64,
+            bounds: points.iter().fold(Aabb::EMPTY, |b, &p| b.union(&Aabb::new(p, p))),
+            skeleton: None,
         };
         let center = data.middle;
         for face in faces {
@@ -98,7 +105,15 @@ impl Convex {
                 value: faces.len() as f64,
             });
         }
+        let planes: Vec<_> = data.faces.iter().map(|f| (f.normal, f.d)).collect();
+        data.skeleton = Skeleton::of(points, data.reach, &planes, |i| faces[i].as_ref());
         Ok(Self { data: Arc::new(data) })
+    }
+
+    /// Its axes, unless it has many, or is not closed and convex.
+    #[inline]
+    pub(crate) fn skeleton(&self) -> Option<&Skeleton> {
+        self.data.skeleton.as_ref()
     }
 
     /// The corners.
@@ -183,14 +198,37 @@ impl Convex {
         self.data.reach
     }
 
+    /// The box around it along its own axes.
+    #[inline]
+    pub fn bounds(&self) -> &Aabb {
+        &self.data.bounds
+    }
+
     /// The world box around the polyhedron.
     pub fn aabb(&self, frame: &Frame) -> Aabb {
-        let mut aabb = Aabb::EMPTY;
-        for &p in &self.data.points {
-            let w = frame.point_to_world(p);
-            aabb = aabb.union(&Aabb::new(w, w));
+        let (low, high) = self.extent(&frame.rotation);
+        Aabb::new(frame.position + low, frame.position + high)
+    }
+
+    /// The least and greatest coordinates of its corners when it is turned.
+    #[inline]
+    pub(crate) fn extent(&self, rotation: &Mat3) -> (Vec3, Vec3) {
+        let (mut low, mut high) = ([[f64::INFINITY; 4]; 3], [[f64::NEG_INFINITY; 4]; 3]);
+        for [x, y, z] in &self.data.blocks {
+            for (i, r) in rotation.rows.iter().enumerate() {
+                for l in 0..4 {
+                    let p = r[0] * x[l] + r[1] * y[l] + r[2] * z[l];
+                    low[i][l] = if p < low[i][l] { p } else { low[i][l] };
+                    high[i][l] = if p > high[i][l] { p } else { high[i][l] };
+                }
+            }
         }
-        aabb
+        let least = |[a, b, c, d]: [f64; 4]| a.min(b).min(c.min(d));
+        let most = |[a, b, c, d]: [f64; 4]| a.max(b).max(c.max(d));
+        (
+            Vec3::new(least(low[0]), least(low[1]), least(low[2])),
+            Vec3::new(most(high[0]), most(high[1]), most(high[2])),
+        )
     }
 }
 

@@ -13,6 +13,7 @@ mod heightfield;
 mod hull;
 mod plane;
 mod ray;
+mod skeleton;
 mod sphere;
 mod surface;
 mod trimesh;
@@ -29,6 +30,7 @@ pub use ellipsoid::Ellipsoid;
 pub use heightfield::Heightfield;
 pub use plane::Plane;
 pub use ray::Ray;
+pub(crate) use skeleton::{MOST_FACES, Ridge, Skeleton};
 pub use sphere::Sphere;
 pub use trimesh::{Neighbour, TriMesh};
 
