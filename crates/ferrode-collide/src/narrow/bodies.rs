@@ -2,6 +2,7 @@ use super::convex::touch;
 use super::dispatch::apart;
 use super::hull_cuboid::hull_cuboid;
 use super::hull_facet::Axes;
+use super::hull_hull::hull_hull;
 use super::manifold::add_manifold;
 use super::support::Body;
 use crate::{Contacts, Frame, Shape};
@@ -26,7 +27,7 @@ pub fn convex_bodies(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Con
 fn in_order(a: &Shape, fa: &Frame, b: &Shape, fb: &Frame, out: &mut Contacts<'_>) {
     in_first_frame(fa, fb, out, |fa, fb, out| {
         let (Some(a), Some(b)) = (Body::of(a, fa, Vec3::ZERO), Body::of(b, fb, Vec3::ZERO)) else { return };
-        let found = match hull_cuboid(&a, &b) {
+        let found = match hull_cuboid(&a, &b).or_else(|| hull_hull(&a, &b)) {
             Some(Axes::Apart) => None,
             Some(Axes::Least(t)) => Some(t),
             Some(Axes::Overlap) | None => touch(&a, &b),

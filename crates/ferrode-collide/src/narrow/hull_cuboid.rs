@@ -3,7 +3,7 @@
 
 use super::convex::Touch;
 use super::facet_axes::greater;
-use super::hull_facet::{ALONE, Axes, BETTER, BEYOND, TOUCHING};
+use super::hull_facet::{ALONE, Axes, BETTER, BEYOND, TOUCHING, is_over, signs};
 use super::support::{Body, Core};
 use crate::Convex;
 use crate::shape::{MOST_FACES, Ridge, Skeleton};
@@ -68,8 +68,12 @@ fn axes<const N: usize>(
     }
     // The normals of the faces.
     let mut normals = [[[0.0; 4]; 3]; N];
+    // Which of their components are below zero.
+    let mut back = [[0u8; 4]; N];
     let rows = &turn.rows;
-    for (i, ([x, y, z, d], normals)) in skeleton.blocks.iter().zip(&mut normals).enumerate() {
+    for (i, (([x, y, z, d], normals), back)) in
+        skeleton.blocks.iter().zip(&mut normals).zip(&mut back).enumerate()
+    {
         let mut reach = [0.0; 4];
         for l in 0..4 {
             reach[l] = d[l];
@@ -80,6 +84,9 @@ fn axes<const N: usize>(
                 reach[l] += n * at[k] + n.abs() * half[k];
                 normals[k][l] = n;
             }
+        }
+        for l in 0..4 {
+            back[l] = signs([normals[0][l], normals[1][l], normals[2][l]]);
         }
         for (l, overlap) in reach.into_iter().enumerate() {
             if overlap < -slack {
@@ -94,7 +101,11 @@ fn axes<const N: usize>(
         let (block, l) = (&normals[usize::from(f >> 2).min(N - 1)], usize::from(f & 3));
         [block[0][l], block[1][l], block[2][l]]
     };
+    let back = back.as_flattened();
     for (i, ridge) in skeleton.edges.iter().enumerate() {
+        if back.get(usize::from(ridge.faces[0])) == back.get(usize::from(ridge.faces[1])) {
+            continue;
+        }
         let (f, g) = (normal(ridge.faces[0]), normal(ridge.faces[1]));
         for k in 0..3 {
             if f[k] * g[k] >= 0.0 {
@@ -186,16 +197,10 @@ fn axes<const N: usize>(
     }
 }
 
-/// Whether a point is over a face of a polyhedron, in that one's coordinates.
-fn is_over(hull: &Convex, face: usize, normal: Vec3, p: Vec3) -> bool {
-    let corners = hull.face(face);
-    let at = |k: usize| hull.points()[corners[k % corners.len()] as usize];
-    (0..corners.len()).all(|k| normal.cross(at(k + 1) - at(k)).dot(p - at(k)) >= 0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::convex::touch;
+    use super::super::hull_hull::hull_hull;
     use super::*;
     use crate::{Cuboid, Frame};
     use ferrode_math::random::OdeRandom;
@@ -222,33 +227,44 @@ mod tests {
                 Frame::from(&Pose::new(Vec3::new(number(), number(), number()) * 1.4, turn))
             };
             let (fa, fb) = (frame(), frame());
+            let first = Convex::from_points(&[0, 1, 2, 3, 4, 5, 6, 7].map(|i: u8| {
+                let side = |bit: u8| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+                // Wedges, beside boxes.
+                let x = if round % 2 == 0 { side(0) } else { 0.5 * side(0) * (1.0 - side(2)) };
+                cuboid.half_sides().component_mul(Vec3::new(x, side(1), side(2)))
+            }));
+            let first = crate::Shape::from(first.unwrap());
             let a = Body::cuboid(&cuboid, &fa, Vec3::ZERO);
+            let other = Body::of(&first, &fa, Vec3::ZERO).unwrap();
             let shape = crate::Shape::from(hull);
             let b = Body::of(&shape, &fb, Vec3::ZERO).unwrap();
-            let want = touch(&a, &b);
-            match hull_cuboid(&a, &b) {
-                None => assert!(shape_faces(&shape) > MOST_FACES),
-                Some(Axes::Apart) => {
-                    apart += 1;
-                    assert!(want.is_none_or(|t| t.depth < 1e-9), "{want:?}");
-                }
-                Some(Axes::Overlap) => assert!(want.is_some()),
-                Some(Axes::Least(t)) => {
-                    clear += 1;
-                    let want = want.map_or(0.0, |t| t.depth);
-                    assert!((t.depth - want).abs() < 1e-8, "{t:?} {want}");
-                    assert!((t.normal.length() - 1.0).abs() < 1e-12);
-                    assert!((t.b - t.a - t.normal * t.depth).length() < 1e-9, "{t:?}");
-                    // The points lie on both bodies.
-                    assert!(t.normal.dot(t.a - a.support(-t.normal)).abs() < 1e-9);
-                    assert!(t.normal.dot(t.b - b.support(t.normal)).abs() < 1e-9);
-                }
-            }
+            check(&a, &b, hull_cuboid(&a, &b), &mut apart, &mut clear);
+            check(&other, &b, hull_hull(&other, &b), &mut apart, &mut clear);
+            check(&b, &other, hull_hull(&b, &other), &mut apart, &mut clear);
         }
-        assert!(apart > 500 && clear > 1500, "{apart} {clear}");
+        assert!(apart > 3000 && clear > 1500, "{apart} {clear}");
     }
 
-    fn shape_faces(shape: &crate::Shape) -> usize {
-        if let crate::Shape::Convex(c) = shape { c.face_count() } else { 0 }
+    fn check(a: &Body<'_>, b: &Body<'_>, found: Option<Axes>, apart: &mut u32, clear: &mut u32) {
+        let want = touch(a, b);
+        match found {
+            // Too many edges.
+            None => {}
+            Some(Axes::Apart) => {
+                *apart += 1;
+                assert!(want.is_none_or(|t| t.depth < 1e-9), "{want:?}");
+            }
+            Some(Axes::Overlap) => assert!(want.is_some()),
+            Some(Axes::Least(t)) => {
+                *clear += 1;
+                let want = want.map_or(0.0, |t| t.depth);
+                assert!((t.depth - want).abs() < 1e-8, "{t:?} {want}");
+                assert!((t.normal.length() - 1.0).abs() < 1e-12);
+                assert!((t.b - t.a - t.normal * t.depth).length() < 1e-9, "{t:?}");
+                // The points lie on both bodies.
+                assert!(t.normal.dot(t.a - a.support(-t.normal)).abs() < 1e-9);
+                assert!(t.normal.dot(t.b - b.support(t.normal)).abs() < 1e-9);
+            }
+        }
     }
 }

@@ -74,8 +74,11 @@ fn axes<const N: usize>(
     let out = [e[0].cross(n), e[1].cross(n)];
     // Products of the faces' normals with two edges of the triangle, and with the directions out over these.
     let mut dots = [[[0.0; 4]; 4]; N];
+    // Of each face, which of the edges lead to its back.
+    let mut back = [[0u8; 4]; N];
     let mut least = (facet.normal.dot(facet.corners[0] - lowest), Axis::Up);
-    for (i, ([x, y, z, d], dots)) in skeleton.blocks.iter().zip(&mut dots).enumerate() {
+    for (i, (([x, y, z, d], dots), back)) in skeleton.blocks.iter().zip(&mut dots).zip(&mut back).enumerate()
+    {
         let dot = |v: Vec3| {
             let mut r = [0.0; 4];
             for l in 0..4 {
@@ -91,6 +94,7 @@ fn axes<const N: usize>(
             let second = first + dots[0][l];
             let third = second + dots[1][l];
             low[l] = lesser(lesser(first, second), third);
+            back[l] = signs([dots[0][l], dots[1][l], -dots[0][l] - dots[1][l]]);
         }
         for (l, low) in low.into_iter().enumerate() {
             if low > slack {
@@ -101,7 +105,13 @@ fn axes<const N: usize>(
             }
         }
     }
+    let back = back.as_flattened();
     for (i, ridge) in skeleton.edges.iter().enumerate() {
+        // Most edges' two faces look the same way along all three.
+        let [f, g] = ridge.faces.map(usize::from);
+        if back.get(f) == back.get(g) {
+            continue;
+        }
         // Of the faces at the edge: products with the triangle's edges, and with the directions out.
         let of = |f: u8| {
             let (block, l) = (&dots[usize::from(f >> 2).min(N - 1)], usize::from(f & 3));
@@ -115,7 +125,6 @@ fn axes<const N: usize>(
                 continue;
             }
             // Against the direction into the polyhedron.
-            let [f, g] = [usize::from(ridge.faces[0]), usize::from(ridge.faces[1])];
             let axis = skeleton.normals[f] * p + skeleton.normals[g] * q;
             let square = axis.length_squared();
             let overlap = axis.dot(ridge.start - c[k]);
@@ -179,5 +188,72 @@ fn axes<const N: usize>(
             let within = |x: f64| (-BEYOND..=1.0 + BEYOND).contains(&x);
             if within(x) && within(y) { touch(m, start + along * x, c[k] + e[k] * y) } else { Axes::Overlap }
         }
+    }
+}
+
+/// One bit for each number below zero.
+#[inline(always)]
+pub(super) fn signs(x: [f64; 3]) -> u8 {
+    u8::from(x[0] < 0.0) | u8::from(x[1] < 0.0) << 1 | u8::from(x[2] < 0.0) << 2
+}
+
+/// Whether a point is over a face of a polyhedron, in that one's coordinates.
+pub(super) fn is_over(hull: &Convex, face: usize, normal: Vec3, p: Vec3) -> bool {
+    let corners = hull.face(face);
+    let at = |k: usize| hull.points()[corners[k % corners.len()] as usize];
+    (0..corners.len()).all(|k| normal.cross(at(k + 1) - at(k)).dot(p - at(k)) >= 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::convex::touch;
+    use super::*;
+    use crate::shape::Neighbour;
+    use crate::{Frame, Shape};
+    use ferrode_math::random::OdeRandom;
+    use ferrode_math::{Pose, Quat};
+
+    /// Against GJK and the expanding polytope.
+    #[test]
+    fn axes_agree_with_support_points() {
+        let mut random = OdeRandom::new(5);
+        let mut number = || f64::from(random.next_u32()) / 4294967296.0 - 0.5;
+        let (mut apart, mut clear) = (0, 0);
+        for round in 0..6000 {
+            let points: Vec<_> =
+                (0..4 + round % 20).map(|_| Vec3::new(number(), number(), number())).collect();
+            let shape = Shape::from(Convex::from_points(&points).unwrap());
+            let turn = Quat::from_axis_angle(Vec3::new(number(), number(), number()), 6.0 * number());
+            let frame = Frame::from(&Pose::new(Vec3::new(number(), number(), number()), turn));
+            let body = Body::of(&shape, &frame, Vec3::ZERO).unwrap();
+            let corners = [0; 3].map(|_| Vec3::new(number(), number(), number()) * 1.5);
+            let Some(normal) = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized() else {
+                continue;
+            };
+            let facet = Facet { corners, normal, neighbours: [Neighbour::None; 3], index: 0 };
+            let (middle, lowest) = (body.middle(), body.support(-normal));
+            if facet.height(middle) < 0.0 || facet.height(lowest) > 0.0 {
+                continue;
+            }
+            let want = touch(&body, &Body::triangle(corners));
+            match hull_facet(&body, middle, &facet, lowest) {
+                None => assert!(matches!(&shape, Shape::Convex(c) if c.face_count() > MOST_FACES)),
+                Some(Axes::Apart) => {
+                    apart += 1;
+                    assert!(want.is_none_or(|t| t.depth < 1e-9), "{want:?}");
+                }
+                Some(Axes::Overlap) => assert!(want.is_some()),
+                Some(Axes::Least(t)) => {
+                    clear += 1;
+                    let want = want.map_or(0.0, |t| t.depth);
+                    assert!((t.depth - want).abs() < 1e-8, "{t:?} {want}");
+                    assert!((t.b - t.a - t.normal * t.depth).length() < 1e-9, "{t:?}");
+                    assert!(t.normal.dot(t.a - body.support(-t.normal)).abs() < 1e-9);
+                    let top = corners.iter().map(|p| t.normal.dot(*p)).fold(f64::NEG_INFINITY, f64::max);
+                    assert!((top - t.normal.dot(t.b)).abs() < 1e-9);
+                }
+            }
+        }
+        assert!(apart > 300 && clear > 300, "{apart} {clear}");
     }
 }

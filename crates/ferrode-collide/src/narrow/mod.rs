@@ -41,6 +41,7 @@ pub(crate) mod heightfield_shape;
 mod heightfield_trimesh;
 mod hull_cuboid;
 mod hull_facet;
+mod hull_hull;
 mod line_gap;
 pub(crate) mod manifold;
 mod merge;

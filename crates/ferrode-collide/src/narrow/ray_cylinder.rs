@@ -1,3 +1,4 @@
+use super::unit::unit_of_length;
 use crate::{Contacts, Cylinder, Frame, Ray};
 use ferrode_math::Vec3;
 
@@ -19,13 +20,14 @@ pub fn ray_cylinder(ray: &Ray, fr: &Frame, cylinder: &Cylinder, fc: &Frame, out:
     let a = direction.x * direction.x + direction.y * direction.y;
     let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
     if a > 1e-300 {
-        let middle = -(start.x * direction.x + start.y * direction.y) / a;
+        let inverse = 1.0 / a;
+        let middle = -(start.x * direction.x + start.y * direction.y) * inverse;
         let p = start + direction * middle;
         let square = radius * radius - (p.x * p.x + p.y * p.y);
         if !(square >= 0.0) {
             return;
         }
-        let chord = (square / a).sqrt();
+        let chord = (square * inverse).sqrt();
         (lo, hi) = (middle - chord, middle + chord);
     } else if start.x * start.x + start.y * start.y > radius * radius {
         return;
@@ -56,9 +58,8 @@ pub fn ray_cylinder(ray: &Ray, fr: &Frame, cylinder: &Cylinder, fc: &Frame, out:
         fc.axis(2)
     } else {
         let p = start + direction * alpha;
-        let scale = if radius > 0.0 { 1.0 / radius } else { 0.0 };
-        fc.axis(0) * (p.x * scale) + fc.axis(1) * (p.y * scale)
+        // As long as the radius, but for rounding.
+        unit_of_length(fc.axis(0) * p.x + fc.axis(1) * p.y, radius).unwrap_or(Vec3::X)
     };
-    let n = if cap { n } else { super::unit::unit_or(n, Vec3::X) };
     out.push(o + u * alpha, if n.dot(u) > 0.0 { -n } else { n }, alpha);
 }

@@ -38,8 +38,12 @@ pub(super) struct Least {
     pub firm: bool,
 }
 
-/// Most steps.
+/// Most steps in all, with the same parts, and from parts to others, and most times that a disc is left for its rim; then it goes
+/// round in circles. Of 15,000 searches that ended well, 70 took more; one from nearer by may not.
 const STEPS: usize = 24;
+const ALIKE: usize = 8;
+const CHANGES: usize = 8;
+const DISCS: usize = 1;
 /// Furthest step, in radians.
 const FURTHEST: f64 = 0.3;
 /// How often a step is cut to a quarter that would lead across a disc.
@@ -96,7 +100,12 @@ fn go_down(a: &Body<'_>, b: &Body<'_>, mut m: Vec3, mut pa: Part, mut pb: Part, 
     let mut off_disc = false;
     // The direction of last looking beside the axis of a disc.
     let mut leaning = m;
+    let (mut alike, mut changes, mut discs) = (0, 0, 0);
     for _ in 0..STEPS {
+        if alike > ALIKE || changes > CHANGES || discs > DISCS {
+            return None;
+        }
+        alike += 1;
         let (mut next, mut settled, bend) = match step(a, b, &pa, &pb, m, scale)? {
             Step::Turn(next, length, bend) => (next, length <= SETTLED, bend),
             Step::Settled(next) => (next, true, f64::INFINITY),
@@ -123,6 +132,7 @@ fn go_down(a: &Body<'_>, b: &Body<'_>, mut m: Vec3, mut pa: Part, mut pb: Part, 
         if la.is_some() || lb.is_some() {
             pa = la.unwrap_or(pa);
             pb = lb.unwrap_or(pb);
+            (alike, changes) = (0, changes + 1);
             continue;
         }
         if !settled {
@@ -145,7 +155,9 @@ fn go_down(a: &Body<'_>, b: &Body<'_>, mut m: Vec3, mut pa: Part, mut pb: Part, 
                     // Off its axis again, where the rim has a direction.
                     m = if m.dot(leaning) < ON_AXIS { leaning } else { rim_direction(a, b, &pa, &pb, m)? };
                     off_disc = true;
+                    discs += 1;
                 }
+                (alike, changes) = (0, changes + 1);
                 pa = na.unwrap_or(pa);
                 pb = nb.unwrap_or(pb);
             }
