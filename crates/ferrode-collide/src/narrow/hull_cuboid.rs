@@ -74,10 +74,7 @@ fn axes<const N: usize>(
     for (i, (([x, y, z, d], normals), back)) in
         skeleton.blocks.iter().zip(&mut normals).zip(&mut back).enumerate()
     {
-        let mut reach = [0.0; 4];
-        for l in 0..4 {
-            reach[l] = d[l];
-        }
+        let mut reach = *d;
         for k in 0..3 {
             for l in 0..4 {
                 let n = rows[k][0] * x[l] + rows[k][1] * y[l] + rows[k][2] * z[l];
