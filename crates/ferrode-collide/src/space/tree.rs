@@ -40,7 +40,8 @@ impl AabbTree {
             let middle = start + split(&mut items[start..end]);
             [part(&items, start, middle), part(&items, middle, end)]
         });
-        tree.items = items.into_iter().map(|i| i.0).collect();
+        // Not in the memory of the larger ones, where it would be collected.
+        tree.items = items.iter().map(|i| i.0).collect();
         tree.nodes.shrink_to_fit();
         tree
     }
