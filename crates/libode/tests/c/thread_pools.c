@@ -1,7 +1,6 @@
 /* Threading implementations: steps of a world in a pool's threads and in the program's own, restarted in between. */
 #include "check.h"
 #include <pthread.h>
-#include <stdatomic.h>
 #include <unistd.h>
 
 static dThreadingImplementationID threads;
@@ -18,12 +17,14 @@ static int count(void *context, dcallindex_t index, dCallReleaseeID self) {
     return 1;
 }
 /* A call that lasts a second, or until the program no longer waits for it. */
-static atomic_int begun, waited, ended;
+static int begun, waited, ended;
+static int get(const int *flag) { return __atomic_load_n(flag, __ATOMIC_SEQ_CST); }
+static void set(int *flag, int to) { __atomic_store_n(flag, to, __ATOMIC_SEQ_CST); }
 static int last(void *context, dcallindex_t index, dCallReleaseeID self) {
     (void)context, (void)index, (void)self;
-    begun = 1;
-    for (int i = 0; i < 100 && !waited; i++) usleep(10000);
-    ended = !waited;
+    set(&begun, 1);
+    for (int i = 0; i < 100 && !get(&waited); i++) usleep(10000);
+    set(&ended, !get(&waited));
     return 1;
 }
 static void post(void) {
@@ -60,11 +61,11 @@ int main(void) {
     for (int i = 0; i < 5; i++) dWorldStep(w, 0.01), dWorldQuickStep(w, 0.01);
     MOVES(dWorldSetStepThreadingImplementation, a);
     f->post_call(threads, 0, 0, 0, 0, 0, last, 0, 0, "last");
-    while (!begun) ;
+    while (!get(&begun)) ;
     dThreadingImplementationShutdownProcessing(threads);
     dThreadingThreadPoolWaitIdleState(pool);
-    waited = 1;
-    CHECKI(dThreadingThreadPoolWaitIdleState, ended);
+    set(&waited, 1);
+    CHECKI(dThreadingThreadPoolWaitIdleState, get(&ended));
     CHECKI(dThreadingImplementationShutdownProcessing, f->retrieve_thread_count(threads));
     dThreadingImplementationCleanupForRestart(threads);
     pthread_t thread;
