@@ -11,9 +11,13 @@ pub fn ray_trimesh(ray: &Ray, fr: &Frame, mesh: &TriMesh, fm: &Frame, out: &mut 
     let (start, direction) = (fm.point_to_local(o), fm.vector_to_local(u));
     let nearest = ray.first_contact || ray.closest_hit;
     let mut limit = ray.length();
+    let probe = Probe::ray(start, direction);
+    if probe.enter_aabb(mesh.bounds(), limit).is_none() {
+        return;
+    }
     {
         let mut all = out.all();
-        mesh.tree().seek(&Probe::ray(start, direction), &mut limit, |i, limit| {
+        mesh.tree().seek(&probe, &mut limit, |i, limit| {
             let n = mesh.normal(i);
             if !(ray.backface_cull && n.dot(direction) > 0.0)
                 && let Some(alpha) = ray_triangle(start, direction, *limit, mesh.corners(i), n)

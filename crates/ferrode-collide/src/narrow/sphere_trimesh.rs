@@ -12,6 +12,9 @@ pub fn sphere_trimesh(sphere: &Sphere, fs: &Frame, mesh: &TriMesh, fm: &Frame, o
     let r = sphere.radius();
     let center = fm.point_to_local(fs.position);
     let around = Aabb::from_center(center, Vec3::splat(r));
+    if !mesh.bounds().overlaps(&around) {
+        return;
+    }
     let consider = |i: u32, all: &mut Contacts<'_>| {
         let (n, corners) = (mesh.normal(i), mesh.corners(i));
         if n == Vec3::ZERO {
