@@ -24,6 +24,7 @@ pub mod real;
 pub mod rotation;
 mod scalar;
 pub mod simd;
+pub mod stage;
 mod vector;
 
 pub use aabb::Aabb;

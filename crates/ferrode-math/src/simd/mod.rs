@@ -75,6 +75,19 @@ pub trait Kernel {
     fn run<L: Lanes>(self) -> Self::Out;
 }
 
+/// A part of a kernel's computation that another thread does, with the lanes that the kernel was given: see [`Lanes::enter`].
+///
+/// Mark `run` `#[inline(always)]`, as that of a [`Kernel`].
+pub trait Work<L: Lanes> {
+    /// Does it.
+    fn run(self);
+}
+
+mod sealed {
+    /// Lanes are what this module offers: `stage` relies on what they read and write.
+    pub trait Sealed {}
+}
+
 /// A truth value per lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Whether it is true in any lane.
@@ -91,7 +104,7 @@ pub trait Block:
 ///
 /// The types that implement it can't be named outside: a kernel gets one from [`dispatch`], which knows that the machine
 /// has the instructions.
-pub trait Lanes: Scalar + Send + Sync + 'static {
+pub trait Lanes: Scalar + Send + Sync + sealed::Sealed + 'static {
     /// How many lanes.
     const LANES: usize;
     /// A truth value per lane.
@@ -100,6 +113,13 @@ pub trait Lanes: Scalar + Send + Sync + 'static {
     type Block: Block;
     /// A number of a record per lane in memory.
     type Index: Copy + Default + AsRef<[u32]> + AsMut<[u32]> + Send + Sync + core::fmt::Debug + 'static;
+
+    /// Does work with the machine's instructions for these lanes. Closures that run in other threads, or that are called by
+    /// reference, don't inherit them from the kernel around them.
+    #[inline(always)]
+    fn enter<W: Work<Self>>(work: W) {
+        work.run();
+    }
 
     /// The same number in every lane.
     fn splat(x: f32) -> Self;

@@ -91,6 +91,8 @@ impl Scalar for F32x4 {
     }
 }
 
+impl super::sealed::Sealed for F32x4 {}
+
 impl Lanes for F32x4 {
     const LANES: usize = 4;
     type Mask = Mask4;

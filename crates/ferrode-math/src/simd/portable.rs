@@ -1,5 +1,6 @@
 //! Lanes as arrays: the fallback, and what the other kinds are tested against.
 
+use super::sealed::Sealed;
 use super::{Block, Lanes, Mask, Record};
 use crate::Scalar;
 use core::cell::Cell;
@@ -36,6 +37,8 @@ macro_rules! blocks {
         }
 
         impl Block for $name {}
+
+        impl Sealed for Portable<$n> {}
 
         impl Lanes for Portable<$n> {
             const LANES: usize = $n;

@@ -4,7 +4,8 @@
 //! the instructions on the machine. That is what makes the intrinsics below sound.
 
 use super::portable::{Block4, Block8, Block16};
-use super::{Compute, Kernel, Lanes, Mask, Record};
+use super::sealed::Sealed;
+use super::{Compute, Kernel, Lanes, Mask, Record, Work};
 use crate::Scalar;
 use core::arch::x86_64::*;
 use core::cell::Cell;
@@ -35,6 +36,33 @@ pub(super) unsafe fn compute_avx2<C: Compute>(computation: C) -> C::Out {
 #[target_feature(enable = "avx,avx2,avx512f")]
 pub(super) unsafe fn run_avx512<K: Kernel>(kernel: K) -> K::Out {
     kernel.run::<F32x16>()
+}
+
+/// Does work with four lanes.
+///
+/// # Safety
+/// None needed: every x86-64 machine has SSE2.
+#[inline(always)]
+unsafe fn enter4<W: Work<F32x4>>(work: W) {
+    work.run();
+}
+
+/// Does work with eight lanes.
+///
+/// # Safety
+/// The machine has AVX2.
+#[target_feature(enable = "avx,avx2")]
+unsafe fn enter8<W: Work<F32x8>>(work: W) {
+    work.run();
+}
+
+/// Does work with sixteen lanes.
+///
+/// # Safety
+/// The machine has AVX-512F.
+#[target_feature(enable = "avx,avx2,avx512f")]
+unsafe fn enter16<W: Work<F32x16>>(work: W) {
+    work.run();
 }
 
 /// Four lanes of SSE2.
@@ -98,7 +126,7 @@ macro_rules! lanes {
         add $add:ident, sub $sub:ident, mul $mul:ident, div $div:ident, sqrt $sqrt:ident, set $set:ident,
         load $load:ident, store $store:ident, min $min:ident, max $max:ident,
         negated $neg:ident, mask $mask:ident, lt $lt:ident, le $le:ident, select $select:ident,
-        gather $gather:ident, scatter $scatter:ident,
+        gather $gather:ident, scatter $scatter:ident, enter $enter:ident,
     ) => {
         lanes!(@binary $lanes, Add, add, $add, AddAssign, add_assign);
         lanes!(@binary $lanes, Sub, sub, $sub, SubAssign, sub_assign);
@@ -154,11 +182,19 @@ macro_rules! lanes {
             }
         }
 
+        impl Sealed for $lanes {}
+
         impl Lanes for $lanes {
             const LANES: usize = $n;
             type Mask = $mask;
             type Block = $block;
             type Index = [u32; $n];
+
+            #[inline(always)]
+            fn enter<W: Work<Self>>(work: W) {
+                // SAFETY: as in `splat`.
+                unsafe { $enter(work) }
+            }
 
             #[inline(always)]
             fn splat(x: f32) -> Self {
@@ -256,7 +292,7 @@ lanes! {
     add _mm_add_ps, sub _mm_sub_ps, mul _mm_mul_ps, div _mm_div_ps, sqrt _mm_sqrt_ps, set _mm_set1_ps,
     load _mm_load_ps, store _mm_store_ps, min _mm_min_ps, max _mm_max_ps,
     negated neg4, mask Mask4, lt _mm_cmplt_ps, le _mm_cmple_ps, select select4,
-    gather gather4, scatter scatter4,
+    gather gather4, scatter scatter4, enter enter4,
 }
 
 lanes! {
@@ -265,7 +301,7 @@ lanes! {
     set _mm256_set1_ps,
     load _mm256_load_ps, store _mm256_store_ps, min _mm256_min_ps, max _mm256_max_ps,
     negated neg8, mask Mask8, lt lt8, le le8, select select8,
-    gather gather8, scatter scatter8,
+    gather gather8, scatter scatter8, enter enter8,
 }
 
 lanes! {
@@ -274,7 +310,7 @@ lanes! {
     set _mm512_set1_ps,
     load _mm512_load_ps, store _mm512_store_ps, min _mm512_min_ps, max _mm512_max_ps,
     negated neg16, mask Mask16, lt lt16, le le16, select select16,
-    gather gather16, scatter scatter16,
+    gather gather16, scatter scatter16, enter enter16,
 }
 
 /// All bits of a lane set for true.
