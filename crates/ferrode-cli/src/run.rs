@@ -17,6 +17,7 @@ use std::time::Instant;
 /// The file is wrong or cannot be simulated, or a result cannot be written.
 pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     let mut simulation = Simulation::new(&args.file, &args.setup)?;
+    simulation.world_mut().set_threads(args.threads);
     if let Some(stepper) = args.stepper {
         simulation.world_mut().stepper = stepper;
     }

@@ -45,9 +45,9 @@ impl Serials {
 }
 
 #[derive(Clone, Debug)]
-struct Slot<T> {
+pub(crate) struct Slot<T> {
     serial: u64,
-    value: Option<T>,
+    pub value: Option<T>,
 }
 
 /// A growing set of objects in stable slots.
@@ -124,6 +124,11 @@ impl<T> Arena<T> {
     /// As [`Arena::get`], to change it.
     pub fn get_mut(&mut self, index: u32) -> Option<&mut T> {
         self.slots.get_mut(index as usize)?.value.as_mut()
+    }
+
+    /// All slots in their order, to change what is in them.
+    pub fn slots_mut(&mut self) -> &mut [Slot<T>] {
+        &mut self.slots
     }
 
     /// The object in a slot, if it is in use.

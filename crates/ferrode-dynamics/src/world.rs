@@ -13,6 +13,7 @@ use crate::step::Scratch;
 use crate::{AutoDisable, Damping, DynamicIterations, Error, JointFeedback, JointKey, JointType};
 use ferrode_math::Vec3;
 use ferrode_math::random::OdeRandom;
+use ferrode_math::stage::Crew;
 
 /// How `Quick` iterates (ODE manual, `dWorldSetQuickStepNumIterations`, `dWorldSetQuickStepW`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +96,8 @@ pub struct World {
     /// Numbers given to groups of bodies that fell asleep together.
     pub(crate) sleep_groups: u64,
     pub(crate) timing: crate::timing::Timing,
+    /// The threads that `Substep` may use.
+    pub(crate) crew: Crew,
     pub(crate) scratch: Scratch,
 }
 
@@ -120,6 +123,7 @@ impl World {
             topology_version: 0,
             sleep_groups: 0,
             timing: crate::timing::Timing::default(),
+            crew: Crew::default(),
             scratch: Scratch::default(),
         }
     }
@@ -285,6 +289,39 @@ impl World {
         settings.check()?;
         self.params.substep = settings;
         Ok(())
+    }
+
+    /// Threads that [`Stepper::Substep`](crate::Stepper::Substep) may use, the caller's included.
+    pub fn threads(&self) -> usize {
+        self.crew.threads()
+    }
+
+    /// Sets how many threads `Substep` may use, the caller's included; 1 by default, and 0 for as many as the machine has. No
+    /// result depends on it, to the bit.
+    ///
+    /// Helpers start here and sleep between steps. They end with the last world that has them: clones of a world have the same,
+    /// as have worlds that are [given](World::set_crew) them. Where a platform has no threads, or grants fewer, there are
+    /// fewer. Worlds of less than some hundred bodies gain nothing.
+    pub fn set_threads(&mut self, threads: usize) {
+        let threads = if threads > 0 {
+            threads
+        } else {
+            std::thread::available_parallelism().map_or(1, core::num::NonZero::get)
+        };
+        if threads != self.crew.threads() {
+            self.crew = Crew::new(threads);
+        }
+    }
+
+    /// The threads that `Substep` uses.
+    pub fn crew(&self) -> &Crew {
+        &self.crew
+    }
+
+    /// Lets the world use the threads of another. Worlds with the same crew may be stepped at the same time: who finds the helpers
+    /// busy does without.
+    pub fn set_crew(&mut self, crew: &Crew) {
+        self.crew = crew.clone();
     }
 
     /// The state of the random generator that shuffles `Quick`'s rows.

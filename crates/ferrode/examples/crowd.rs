@@ -1,7 +1,8 @@
 //! Scenes of many bodies, timed: `cargo run --release --example crowd -- pyramid 600`.
 //!
 //! Arguments: the scene (`pyramid`, `bin`, `ragdolls`, `robots`, `chain`, `heavy`), the number of steps, and optionally the
-//! number of bodies, rows or robots, and `awake` to keep bodies from falling asleep, `substeps=8`, `frequency=60`, `damping=5`, `push=1`.
+//! number of bodies, rows or robots, and `awake` to keep bodies from falling asleep, `substeps=8`, `frequency=60`, `damping=5`, `push=1`,
+//! `threads=2`.
 
 use ferrode::prelude::*;
 use ferrode::{Ball, Hinge, JointError};
@@ -30,6 +31,7 @@ fn main() -> Result<(), Error> {
             "loose" => settings.exact_joints = false,
             "jfrequency" => settings.joint.frequency = number,
             "jdamping" => settings.joint.damping_ratio = number,
+            "threads" => world.set_threads(number as usize),
             "push" => settings.push_out_speed = number,
             _ => {}
         }

@@ -24,6 +24,13 @@ pub struct Contact {
     pub(super) limit: f64,
 }
 
+impl Contact {
+    /// Whether the place where it is stands empty.
+    pub fn is_vacant(&self) -> bool {
+        self.pair == NONE
+    }
+}
+
 /// All contacts, some of them vacant.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Slab {

@@ -15,6 +15,49 @@ pub enum Motion {
     Awake,
 }
 
+/// What became of geoms since the last update.
+#[derive(Clone, Debug, Default)]
+pub(super) struct News {
+    /// Moved or added.
+    pub moved: Vec<u32>,
+    /// Awake again, or moved by hand.
+    pub woken: Vec<u32>,
+}
+
+/// A geom of the cache that a task tells news of: see [`PairCache::tell`](super::PairCache::tell).
+#[derive(Debug)]
+pub struct Told<'a> {
+    pub(super) id: u32,
+    pub(super) geom: Option<&'a mut GeomState>,
+    pub(super) next: u32,
+    pub(super) news: &'a mut News,
+}
+
+impl Told<'_> {
+    /// As [`PairCache::move_geom`](super::PairCache::move_geom).
+    #[inline]
+    pub fn move_geom(&mut self, frame: &Frame) {
+        if let Some(geom) = &mut self.geom {
+            geom.follow(self.id, frame, self.next, self.news);
+        }
+    }
+
+    /// As [`PairCache::set_ahead`](super::PairCache::set_ahead).
+    #[inline]
+    pub fn set_ahead(&mut self, ahead: f32) {
+        if let Some(geom) = &mut self.geom {
+            geom.look_ahead(self.id, ahead, self.next, self.news);
+        }
+    }
+
+    /// As [`PairCache::set_awake`](super::PairCache::set_awake).
+    pub fn set_awake(&mut self, awake: bool) {
+        if let Some(geom) = &mut self.geom {
+            geom.rouse(self.id, awake, self.news);
+        }
+    }
+}
+
 #[derive(Clone, Debug)]
 pub(super) struct GeomState {
     pub shape: Shape,
@@ -84,6 +127,41 @@ impl GeomState {
             self.odometer += by;
         }
         true
+    }
+
+    /// Goes to another place before update `next`.
+    #[inline]
+    pub fn follow(&mut self, id: u32, frame: &Frame, next: u32, news: &mut News) {
+        if self.go(frame) && self.moved != next {
+            self.moved = next;
+            news.moved.push(id);
+            if !self.awake() {
+                // Moved by hand: what rests on it must be looked at.
+                news.woken.push(id);
+            }
+        }
+    }
+
+    /// Looks so far ahead from update `next` on.
+    #[inline]
+    pub fn look_ahead(&mut self, id: u32, ahead: f32, next: u32, news: &mut News) {
+        if ahead.is_finite() && ahead >= 0.0 {
+            self.ahead = ahead;
+            if self.spent() > self.leaf_limit && self.moved != next {
+                self.moved = next;
+                news.moved.push(id);
+            }
+        }
+    }
+
+    /// Wakes or falls asleep.
+    pub fn rouse(&mut self, id: u32, awake: bool, news: &mut News) {
+        if self.motion != Motion::Fixed && self.awake() != awake {
+            self.motion = if awake { Motion::Awake } else { Motion::Asleep };
+            if awake {
+                news.woken.push(id);
+            }
+        }
     }
 
     /// The box around it, larger by what pairs look ahead.

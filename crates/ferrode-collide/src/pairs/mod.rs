@@ -30,7 +30,7 @@
 //! comparison. What falls asleep keeps its manifold, impulses included.
 //!
 //! **Order.** Tasks are cut by place, never by thread, and what they found is applied in their order; so places, and all
-//! that follows, depend on the history alone. Without the feature `parallel` the same tasks run one after the other.
+//! that follows, depend on the history alone.
 
 mod contact;
 mod geoms;
@@ -44,14 +44,18 @@ mod tests;
 use contact::Slab;
 pub use contact::{Contact, Contacts};
 use geoms::GeomState;
-pub use geoms::Motion;
+use geoms::News;
+pub use geoms::{Motion, Told};
 
 use crate::manifold::Axis;
 use crate::space::dynamic_tree::DynamicTree;
 use crate::{Frame, Shape};
+use ferrode_math::stage::{Crew, chunks};
 use table::PairTable;
 
 const NONE: u32 = u32::MAX;
+/// Records of a task of [`PairCache::tell`].
+pub const TOLD: usize = 256;
 
 /// How near is near.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -112,11 +116,10 @@ pub struct PairCache {
     contacts: Slab,
     /// Number of updates.
     step: u32,
-    /// Geoms that moved or were added since the last update.
-    moved: Vec<u32>,
     /// Geoms whose leaves changed.
     changed: Vec<u32>,
-    woken: Vec<u32>,
+    news: News,
+    told: Vec<News>,
     began: Vec<(u32, u32)>,
     ended: Vec<(u32, u32)>,
     work: update::Work,
@@ -146,7 +149,7 @@ impl PairCache {
         let mut geom = GeomState::new(shape, frame, motion);
         geom.moved = self.step.wrapping_add(1);
         self.geoms[id as usize] = Some(geom);
-        self.moved.push(id);
+        self.news.moved.push(id);
     }
 
     /// Takes a geom out, and ends its pairs. Does nothing if there is none with this number.
@@ -161,9 +164,9 @@ impl PairCache {
         self.moving.remove(id);
         self.unbounded.retain(|&u| u != id);
         self.geoms[id as usize] = None;
-        self.moved.retain(|&m| m != id);
+        self.news.moved.retain(|&m| m != id);
         self.changed.retain(|&c| c != id);
-        self.woken.retain(|&w| w != id);
+        self.news.woken.retain(|&w| w != id);
     }
 
     fn geom(&self, id: u32) -> Option<&GeomState> {
@@ -173,44 +176,57 @@ impl PairCache {
     /// Tells where a geom is now. Frames that are no numbers are ignored.
     #[inline]
     pub fn move_geom(&mut self, id: u32, frame: &Frame) {
-        let next = self.step.wrapping_add(1);
-        if let Some(Some(geom)) = self.geoms.get_mut(id as usize)
-            && geom.go(frame)
-            && geom.moved != next
-        {
-            geom.moved = next;
-            self.moved.push(id);
-            if !geom.awake() {
-                // Moved by hand: what rests on it must be looked at.
-                self.woken.push(id);
-            }
-        }
+        self.tell_of(id, |geom| geom.move_geom(frame));
     }
 
     /// How far a geom may go in the coming step beyond the margin: contacts are looked for so far ahead, in metres.
     pub fn set_ahead(&mut self, id: u32, ahead: f32) {
-        if let Some(Some(geom)) = self.geoms.get_mut(id as usize)
-            && ahead.is_finite()
-            && ahead >= 0.0
-        {
-            geom.ahead = ahead;
-            if geom.spent() > geom.leaf_limit && geom.moved != self.step.wrapping_add(1) {
-                geom.moved = self.step.wrapping_add(1);
-                self.moved.push(id);
-            }
+        self.tell_of(id, |geom| geom.set_ahead(ahead));
+    }
+
+    /// Calls `tell` for a geom, to tell what became of it.
+    pub fn tell_of(&mut self, id: u32, tell: impl FnOnce(&mut Told<'_>)) {
+        let next = self.step.wrapping_add(1);
+        if let Some(Some(geom)) = self.geoms.get_mut(id as usize) {
+            tell(&mut Told { id, geom: Some(geom), next, news: &mut self.news });
         }
     }
 
     /// Whether a geom may be moved by contacts. Pairs of two that are not awake are not looked at.
     pub fn set_awake(&mut self, id: u32, awake: bool) {
-        if let Some(Some(geom)) = self.geoms.get_mut(id as usize)
-            && geom.motion != Motion::Fixed
-            && geom.awake() != awake
-        {
-            geom.motion = if awake { Motion::Awake } else { Motion::Asleep };
-            if awake {
-                self.woken.push(id);
+        self.tell_of(id, |geom| geom.set_awake(awake));
+    }
+
+    /// Calls `tell` for each of the caller's records, which are numbered as the geoms are, to tell what became of its geom, with all
+    /// threads. Each task of [`TOLD`] records has a place for what it finds. As if the calls were made one after the other.
+    pub fn tell<S: Send, O: Send + Default>(
+        &mut self,
+        crew: &Crew,
+        records: &mut [S],
+        found: &mut Vec<O>,
+        tell: impl Fn(u32, &mut S, &mut Told<'_>, &mut O) + Sync,
+    ) {
+        let next = self.step.wrapping_add(1);
+        if self.geoms.len() < records.len() {
+            self.geoms.resize_with(records.len(), || None);
+        }
+        let tasks = records.len().div_ceil(TOLD);
+        found.resize_with(tasks, O::default);
+        if self.told.len() < tasks {
+            self.told.resize_with(tasks, News::default);
+        }
+        let lists = (chunks(&mut self.geoms[..records.len()], TOLD), chunks(records, TOLD));
+        let places = (chunks(found, 1), chunks(&mut self.told, 1));
+        crew.each((lists, places), |task, ((geoms, records), (found, news))| {
+            for (i, (geom, record)) in geoms.iter_mut().zip(records).enumerate() {
+                let id = (task * TOLD + i) as u32;
+                let mut told = Told { id, geom: geom.as_mut(), next, news: &mut news[0] };
+                tell(id, record, &mut told, &mut found[0]);
             }
+        });
+        for news in &mut self.told[..tasks] {
+            self.news.moved.append(&mut news.moved);
+            self.news.woken.append(&mut news.woken);
         }
     }
 
@@ -233,6 +249,11 @@ impl PairCache {
     /// run over them in parallel. A place stays a contact's own as long as it lasts.
     pub fn contact_places(&mut self) -> (&mut [Contact], &[u64]) {
         self.contacts.places()
+    }
+
+    /// As [`PairCache::contact_places`], to look at.
+    pub fn places(&self) -> (&[Contact], &[u64]) {
+        (&self.contacts.list, &self.contacts.awake)
     }
 
     /// The contact at a place.

@@ -153,14 +153,14 @@ fn fingerprint(cache: &PairCache) -> Vec<u32> {
     bits
 }
 
-fn run(steps: usize) -> Vec<Vec<u32>> {
+fn run(steps: usize, crew: &Crew) -> Vec<Vec<u32>> {
     let mut scene = Scene::new(3000, 7.0, 0.05);
     let mut cache = PairCache::new(PairSettings::default());
     scene.fill(&mut cache);
     (0..steps)
         .map(|step| {
             scene.go(&mut cache);
-            cache.update(&|a, b| !(a + b).is_multiple_of(11));
+            cache.update_with(crew, &|a, b| !(a + b).is_multiple_of(11));
             let (places, _) = cache.contact_places();
             for (i, c) in places.iter_mut().enumerate() {
                 c.tag = c.tag.wrapping_add(1);
@@ -174,13 +174,9 @@ fn run(steps: usize) -> Vec<Vec<u32>> {
         .collect()
 }
 
-#[cfg(feature = "parallel")]
 #[test]
 fn threads_change_nothing() {
-    let with = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| run(12))
-    };
+    let with = |threads| run(12, &Crew::new(threads));
     let one = with(1);
     assert!(one.last().unwrap().len() > 50_000);
     assert!(one == with(2));

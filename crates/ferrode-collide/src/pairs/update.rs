@@ -8,6 +8,7 @@ use crate::manifold::{Axis, Manifold, Touching, Workspace, convex_manifold, is_c
 use crate::narrow::collides;
 use crate::space::dynamic_tree::DynamicTree;
 use crate::space::f32_box::Box32;
+use ferrode_math::stage::Crew;
 
 /// Leaves whose pairs are looked for in one task.
 const LEAVES: usize = 128;
@@ -96,27 +97,32 @@ impl PairCache {
     /// `filter` is asked once for each pair of geoms that come near each other: those it turns away are forgotten until
     /// their boxes part and meet again.
     pub fn update(&mut self, filter: &(dyn Fn(u32, u32) -> bool + Sync)) {
+        self.update_with(&Crew::default(), filter);
+    }
+
+    /// As [`PairCache::update`], with more threads; `filter` may be asked by several at once, in no order. The outcome is the same.
+    pub fn update_with(&mut self, crew: &Crew, filter: &(dyn Fn(u32, u32) -> bool + Sync)) {
         self.step = self.step.wrapping_add(1);
         self.began.clear();
         self.ended.clear();
         self.ended.append(&mut self.work.parted);
-        self.move_leaves();
-        self.find_pairs(filter);
+        self.move_leaves(crew);
+        self.find_pairs(crew, filter);
         self.wake_pairs();
-        let tasks = self.look_at_pairs();
-        let kept = self.look_at_contacts();
+        let tasks = self.look_at_pairs(crew);
+        let kept = self.look_at_contacts(crew);
         self.apply(tasks, kept);
-        self.moved.clear();
+        self.news.moved.clear();
         self.changed.clear();
     }
 
     /// Fits leaves to the geoms that may have left theirs.
-    fn move_leaves(&mut self) {
-        let Self { geoms, still, moving, unbounded, moved, changed, work, settings, step, .. } = self;
+    fn move_leaves(&mut self, crew: &Crew) {
+        let Self { geoms, still, moving, unbounded, news, changed, work, settings, step, .. } = self;
         let Work { boxes, new, changes, .. } = work;
         let tree =
             |g: &GeomState, id: u32| if g.motion == Motion::Fixed { still.leaf(id) } else { moving.leaf(id) };
-        each_chunk(moved, PAIRS, boxes, |ids, out| {
+        each_chunk(crew, &news.moved, PAIRS, boxes, |ids, out| {
             out.clear();
             for &id in ids {
                 let Some(Some(g)) = geoms.get(id as usize) else { continue };
@@ -135,7 +141,7 @@ impl PairCache {
                 out.push((id, leaf, g.spent() + room.max(0.0)));
             }
         });
-        let tasks = moved.len().div_ceil(PAIRS);
+        let tasks = news.moved.len().div_ceil(PAIRS);
         for &(id, leaf, limit) in boxes[..tasks].iter().flatten() {
             let Some(Some(g)) = geoms.get_mut(id as usize) else { continue };
             g.leaf_limit = limit;
@@ -155,7 +161,7 @@ impl PairCache {
                 new[1].push((id, leaf));
             }
         }
-        for &id in moved.iter() {
+        for &id in &news.moved {
             let Some(Some(g)) = geoms.get_mut(id as usize) else { continue };
             if !g.bounded {
                 g.leaf_changed = *step;
@@ -171,10 +177,10 @@ impl PairCache {
     }
 
     /// Makes pairs of changed leaves and those they overlap.
-    fn find_pairs(&mut self, filter: &(dyn Fn(u32, u32) -> bool + Sync)) {
+    fn find_pairs(&mut self, crew: &Crew, filter: &(dyn Fn(u32, u32) -> bool + Sync)) {
         let Self { geoms, still, moving, unbounded, pairs, table, changed, work, step, .. } = self;
         let Work { near, created, .. } = work;
-        each_chunk(changed, LEAVES, near, |ids, out| {
+        each_chunk(crew, changed, LEAVES, near, |ids, out| {
             out.clear();
             for &id in ids {
                 let Some(Some(g)) = geoms.get(id as usize) else { continue };
@@ -262,20 +268,20 @@ impl PairCache {
 
     /// Looks again at the pairs of geoms that woke.
     fn wake_pairs(&mut self) {
-        for k in 0..self.woken.len() {
-            for p in self.pairs_of(self.woken[k]) {
+        for k in 0..self.news.woken.len() {
+            for p in self.pairs_of(self.news.woken[k]) {
                 set(&mut self.awake, p, true);
                 self.contacts.set_chain_awake(self.pairs[p as usize].first, true);
             }
         }
-        self.woken.clear();
+        self.news.woken.clear();
     }
 
     /// Near pairs: those whose leaves parted, those that nobody moves, those that may touch now. Returns the number of
     /// tasks.
-    fn look_at_pairs(&mut self) -> usize {
+    fn look_at_pairs(&mut self, crew: &Crew) -> usize {
         let Self { geoms, still, moving, pairs, awake, work, settings, step, .. } = self;
-        each(pairs, awake, PAIRS, &mut work.pairs, |first, pairs, bits, out| {
+        each(crew, pairs, awake, PAIRS, &mut work.pairs, |first, pairs, bits, out| {
             out.one.clear();
             out.several.clear();
             out.manifolds.clear();
@@ -328,11 +334,11 @@ impl PairCache {
     }
 
     /// Contacts: refreshed, or of convex pairs that moved further, found anew. Returns the number of tasks.
-    fn look_at_contacts(&mut self) -> usize {
+    fn look_at_contacts(&mut self, crew: &Crew) -> usize {
         let Self { geoms, pairs, contacts, work, settings, step, .. } = self;
         let (list, awake) = contacts.places();
         let tasks = list.len().div_ceil(CONTACTS);
-        each(list, awake, CONTACTS, &mut work.contacts, |first, list, bits, out| {
+        each(crew, list, awake, CONTACTS, &mut work.contacts, |first, list, bits, out| {
             out.parted.clear();
             out.touching.clear();
             for_bits(bits, |i| {

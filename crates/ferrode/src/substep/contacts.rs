@@ -8,16 +8,19 @@ use ferrode_collide::pairs::{Contact, PairCache};
 use ferrode_collide::{Frame, Shape};
 use ferrode_dynamics::{ContactManifold, ManifoldPoint};
 use ferrode_math::Vec3;
+use ferrode_math::stage::{Crew, chunks};
 
 /// The tag of a contact whose manifold has been set up; new ones have 0.
 const SET_UP: u32 = 1;
+/// Contacts of one task.
+const PLACES: usize = 256;
 
 impl World {
     /// Broad and narrow phase.
-    pub(super) fn update_pairs(&mut self, pipeline: &mut Pipeline) {
+    pub(super) fn update_pairs(&mut self, crew: &Crew, pipeline: &mut Pipeline) {
         let Pipeline { pairs, known, .. } = pipeline;
         let (colliders, infos, known) = (&self.colliders, &self.geom_infos, &*known);
-        pairs.update(&|a, b| {
+        pairs.update_with(crew, &|a, b| {
             let of = |slot: u32| {
                 let info = infos.get(slot as usize)?.as_ref()?;
                 let known = known.get(slot as usize)?.as_ref()?;
@@ -30,64 +33,56 @@ impl World {
     }
 
     /// Gives the solver what touches.
-    pub(super) fn fill_manifolds(&mut self, pipeline: &mut Pipeline) {
+    pub(super) fn fill_manifolds(&mut self, crew: &Crew, pipeline: &mut Pipeline) {
         let rules = (self.rules_version, self.dynamics.topology_version());
         let anew = pipeline.seen_rules != rules;
         pipeline.seen_rules = rules;
-        let places = pipeline.pairs.contact_places().0.len();
-        let Pipeline { pairs, known, manifolds, surfaces, .. } = pipeline;
+        let Pipeline { pairs, known, manifolds, surfaces, filled, .. } = pipeline;
         if anew {
             surfaces.clear();
         }
-        manifolds.resize(places, ContactManifold::new(None, None, 0));
-        for (place, manifold) in manifolds.iter_mut().enumerate() {
-            match pairs.contact(place as u32) {
-                None => manifold.clear(),
-                Some(contact) if anew || contact.tag != SET_UP => {
-                    let surface = self.surface_of(contact, surfaces);
-                    let body = |slot: u32| known.get(slot as usize)?.as_ref()?.body;
-                    let mut made = match surface {
-                        Some(surface) => ContactManifold::new(body(contact.a), body(contact.b), surface),
-                        // They pass through each other.
-                        None => ContactManifold::ignored(),
-                    };
-                    if contact.tag == SET_UP {
-                        made.carry_over(manifold);
+        let (contacts, awake) = pairs.places();
+        manifolds.resize(contacts.len(), ContactManifold::new(None, None, 0));
+        filled.resize_with(contacts.len().div_ceil(PLACES), Filled::default);
+        let filling = Filling { world: self, pairs, known };
+        crew.each((chunks(manifolds, PLACES), chunks(filled, 1)), |task, (manifolds, filled)| {
+            let filled = &mut filled[0];
+            filled.start();
+            for (place, manifold) in (task * PLACES..).zip(manifolds) {
+                let contact = &contacts[place];
+                if contact.is_vacant() {
+                    if !manifold.is_empty() {
+                        manifold.clear();
                     }
-                    *manifold = made;
+                } else if anew || contact.tag != SET_UP {
+                    filled.new.push(place as u32);
+                } else if awake[place >> 6] >> (place & 63) & 1 != 0 {
+                    filling.fill(contact, manifold, filled);
                 }
-                Some(_) => {}
+            }
+        });
+        for filled in filled.iter_mut() {
+            for place in core::mem::take(&mut filled.new) {
+                let place = place as usize;
+                let (contact, manifold) = (&contacts[place], &mut manifolds[place]);
+                let surface = self.surface_of(contact, surfaces);
+                let body = |slot: u32| known.get(slot as usize)?.as_ref()?.body;
+                let mut made = match surface {
+                    Some(surface) => ContactManifold::new(body(contact.a), body(contact.b), surface),
+                    // They pass through each other.
+                    None => ContactManifold::ignored(),
+                };
+                if contact.tag == SET_UP {
+                    made.carry_over(manifold);
+                }
+                *manifold = made;
+                if awake[place >> 6] >> (place & 63) & 1 != 0 {
+                    filling.fill(contact, manifold, filled);
+                }
             }
         }
-        let (mut deepest, mut points) = (0.0f32, 0);
-        for (place, contact) in pairs.contacts() {
-            let manifold = &mut manifolds[place as usize];
-            if manifold.is_ignored() {
-                continue;
-            }
-            let of = |slot: u32| {
-                let known = known.get(slot as usize)?.as_ref()?;
-                Some((known, pairs.frame(slot)?, slot))
-            };
-            let (Some(a), Some(b)) = (of(contact.a), of(contact.b)) else { continue };
-            if grazes(contact, pairs, a.1, b.1) {
-                manifold.clear();
-                continue;
-            }
-            fill(manifold, contact, (a.0, a.1), (b.0, b.1));
-            if a.0.directed || b.0.directed {
-                let normal = manifold.normal();
-                let direction = [a.2, b.2]
-                    .into_iter()
-                    .zip([a.1, b.1])
-                    .find_map(|(slot, frame)| direction(&self.geom_infos, slot, frame, normal));
-                manifold.set_tangent(direction.unwrap_or(Vec3::ZERO));
-            }
-            for p in contact.manifold.points().iter().filter(|p| p.depth >= 0.0) {
-                points += 1;
-                deepest = if p.depth > deepest { p.depth } else { deepest };
-            }
-        }
+        let deepest = filled.iter().fold(0.0f32, |d, f| if f.deepest > d { f.deepest } else { d });
+        let points = filled.iter().map(|f| f.points).sum();
         (pipeline.points, pipeline.max_depth) = (points, f64::from(deepest));
     }
 
@@ -99,6 +94,60 @@ impl World {
             return None;
         }
         Some(table.place(&self.pair_surface(a, b)?))
+    }
+}
+
+/// What a task found that filled manifolds.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Filled {
+    /// Places of contacts that have no manifold yet.
+    new: Vec<u32>,
+    points: usize,
+    deepest: f32,
+}
+
+impl Filled {
+    fn start(&mut self) {
+        self.new.clear();
+        (self.points, self.deepest) = (0, 0.0);
+    }
+}
+
+/// What manifolds are filled from.
+#[derive(Clone, Copy)]
+struct Filling<'a> {
+    world: &'a World,
+    pairs: &'a PairCache,
+    known: &'a [Option<Known>],
+}
+
+impl Filling<'_> {
+    fn fill(&self, contact: &Contact, manifold: &mut ContactManifold, filled: &mut Filled) {
+        if manifold.is_ignored() {
+            return;
+        }
+        let of = |slot: u32| {
+            let known = self.known.get(slot as usize)?.as_ref()?;
+            Some((known, self.pairs.frame(slot)?, slot))
+        };
+        let (Some(a), Some(b)) = (of(contact.a), of(contact.b)) else { return };
+        if grazes(contact, self.pairs, a.1, b.1) {
+            manifold.clear();
+            return;
+        }
+        fill(manifold, contact, (a.0, a.1), (b.0, b.1));
+        if a.0.directed || b.0.directed {
+            let normal = manifold.normal();
+            let direction = [a.2, b.2]
+                .into_iter()
+                .zip([a.1, b.1])
+                .find_map(|(slot, frame)| direction(&self.world.geom_infos, slot, frame, normal));
+            manifold.set_tangent(direction.unwrap_or(Vec3::ZERO));
+        }
+        for p in contact.manifold.points().iter().filter(|p| p.depth >= 0.0) {
+            filled.points += 1;
+            filled.deepest = if p.depth > filled.deepest { p.depth } else { filled.deepest };
+        }
     }
 }
 
@@ -175,21 +224,20 @@ fn place(r: &[[f32; 3]; 3], v: Vec3f, origin: [f32; 3]) -> [f32; 3] {
 
 impl Pipeline {
     /// Puts the solver's impulses into the cache, which hands them on to the same points a step later.
-    pub(super) fn keep_impulses(&mut self) {
-        let (contacts, awake) = self.pairs.contact_places();
-        for (w, word) in awake.iter().enumerate() {
-            let mut bits = *word;
-            while bits != 0 {
-                let place = 64 * w + bits.trailing_zeros() as usize;
-                bits &= bits - 1;
-                let contact = &mut contacts[place];
+    pub(super) fn keep_impulses(&mut self, crew: &Crew) {
+        let Self { pairs, manifolds, .. } = self;
+        let (contacts, awake) = pairs.contact_places();
+        crew.each(chunks(contacts, PLACES), |task, contacts| {
+            for (place, contact) in (task * PLACES..).zip(contacts) {
+                if awake[place >> 6] >> (place & 63) & 1 == 0 {
+                    continue;
+                }
                 contact.tag = SET_UP;
-                for (point, impulse) in
-                    contact.manifold.points_mut().iter_mut().zip(self.manifolds[place].points())
-                {
-                    point.impulse[0] = impulse.impulse;
+                let points = contact.manifold.points_mut().iter_mut();
+                for (point, solved) in points.zip(manifolds[place].points()) {
+                    point.impulse[0] = solved.impulse;
                 }
             }
-        }
+        });
     }
 }

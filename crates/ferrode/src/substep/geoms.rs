@@ -3,10 +3,19 @@
 use super::Pipeline;
 use super::continuous::Fast;
 use crate::{GeomInfo, World};
-use ferrode_collide::pairs::Motion;
+use ferrode_collide::pairs::{Motion, Told};
 use ferrode_collide::{Frame, GeomKey};
-use ferrode_dynamics::BodyKey;
+use ferrode_dynamics::{Body, BodyKey};
 use ferrode_math::Pose;
+use ferrode_math::stage::Crew;
+
+/// What a task found that follows bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Followed {
+    fast: Vec<Fast>,
+    /// Geoms whose bodies became kinematic, or are no longer.
+    other_kind: Vec<u32>,
+}
 
 /// What is known of a geom in the cache.
 #[derive(Clone, Debug)]
@@ -28,65 +37,66 @@ pub(super) struct Known {
 
 impl World {
     /// Brings the cache's geoms to where the bodies are, and notes bodies that move too far in one step.
-    pub(super) fn follow_bodies(&mut self, h: f64, pipeline: &mut Pipeline) {
+    pub(super) fn follow_bodies(&mut self, h: f64, crew: &Crew, pipeline: &mut Pipeline) {
         if pipeline.seen_geoms != Some(self.geom_version) {
             pipeline.seen_geoms = Some(self.geom_version);
             self.take_geoms_in(pipeline);
         }
-        pipeline.fast.clear();
-        let margin = pipeline.pairs.settings().margin;
-        self.call_geoms(pipeline);
-        for slot in pipeline.called.iter().copied() {
-            let Some(Some(known)) = pipeline.known.get_mut(slot as usize) else { continue };
-            let Some(key) = known.body else { continue };
-            let Ok(body) = self.dynamics.body(key) else { continue };
-            let awake = body.is_enabled() && !body.is_quarantined();
-            if known.motion != Motion::Fixed && awake != (known.motion == Motion::Awake) {
-                known.motion = if awake { Motion::Awake } else { Motion::Asleep };
-                pipeline.pairs.set_awake(slot, awake);
-            }
+        let all = self.call_geoms(pipeline);
+        let Pipeline { pairs, known, called, fast, followed, .. } = pipeline;
+        let (margin, dynamics) = (pairs.settings().margin, &self.dynamics);
+        for found in followed.iter_mut() {
+            found.fast.clear();
+            found.other_kind.clear();
+        }
+        let look = |slot: u32, known: &mut Option<Known>, geom: &mut Told<'_>, found: &mut Followed| {
+            let Some(known) = known else { return };
+            let Some((key, body)) = known.body.and_then(|key| Some((key, dynamics.body(key).ok()?))) else {
+                return;
+            };
             if body.is_kinematic() != (known.motion == Motion::Fixed) {
+                found.other_kind.push(slot);
+                return;
+            }
+            if let Some(fast) = known.follow(key, body, h, margin, geom) {
+                found.fast.push(fast);
+            }
+        };
+        if all {
+            pairs.tell(crew, known, followed, look);
+        } else {
+            followed.resize_with(followed.len().max(1), Followed::default);
+            for slot in called.iter().copied() {
+                let Some(known) = known.get_mut(slot as usize) else { continue };
+                pairs.tell_of(slot, |geom| look(slot, known, geom, &mut followed[0]));
+            }
+        }
+        fast.clear();
+        for found in followed {
+            fast.append(&mut found.fast);
+            for slot in found.other_kind.drain(..) {
                 // It became kinematic, or dynamic again.
+                let Some(Some(known)) = known.get_mut(slot as usize) else { continue };
+                let Some((key, body)) = known.body.and_then(|key| Some((key, dynamics.body(key).ok()?)))
+                else {
+                    continue;
+                };
                 known.motion = motion_of(body);
-                if let (Some(shape), Some(frame)) =
-                    (pipeline.pairs.shape(slot).cloned(), pipeline.pairs.frame(slot).copied())
-                {
-                    pipeline.pairs.insert(slot, shape, &frame, known.motion);
+                if let (Some(shape), Some(frame)) = (pairs.shape(slot).cloned(), pairs.frame(slot).copied()) {
+                    pairs.insert(slot, shape, &frame, known.motion);
                 }
-            }
-            if known.pose_version != body.pose_version() {
-                known.pose_version = body.pose_version();
-                let mut frame = Frame { position: body.position(), rotation: body.rotation() };
-                if let Some(offset) = &known.offset {
-                    let arm = frame.rotation * offset.position;
-                    frame.position += arm;
-                    frame.rotation = frame.rotation * offset.rotation.to_matrix();
-                    known.arm = [arm.x as f32, arm.y as f32, arm.z as f32];
-                }
-                pipeline.pairs.move_geom(slot, &frame);
-            }
-            if awake {
-                let travel = body.linear_velocity().length() * h;
-                let ahead = if travel > margin { (travel - margin) as f32 } else { 0.0 };
-                if ahead != known.ahead {
-                    known.ahead = ahead;
-                    pipeline.pairs.set_ahead(slot, ahead.min(known.thickness));
-                }
-                if travel > f64::from(known.thickness) && known.motion == Motion::Awake {
-                    pipeline.fast.push(Fast { geom: known.key, body: key, start: body.pose() });
-                }
+                pairs.tell_of(slot, |geom| fast.extend(known.follow(key, body, h, margin, geom)));
             }
         }
     }
 
-    /// Lists the geoms whose bodies may have moved, woken or fallen asleep.
-    fn call_geoms(&self, pipeline: &mut Pipeline) {
+    /// Lists the geoms whose bodies may have moved, woken or fallen asleep; true, without a list, for all.
+    fn call_geoms(&self, pipeline: &mut Pipeline) -> bool {
         let (count, version) = self.dynamics.roll_call();
         let called = &mut pipeline.called;
         called.clear();
         if pipeline.seen_roll != Some(version) || 2 * count > self.dynamics.body_count() {
-            called.extend(0..pipeline.known.len() as u32);
-            return;
+            return true;
         }
         for key in self.dynamics.roll() {
             for geom in self.geoms_of_body.get(&key).map_or(&[][..], Vec::as_slice) {
@@ -94,6 +104,7 @@ impl World {
             }
         }
         called.sort_unstable();
+        false
     }
 
     /// Wakes the bodies that sleep on a geom which is about to change.
@@ -170,7 +181,47 @@ impl Known {
     }
 }
 
-fn motion_of(body: &ferrode_dynamics::Body) -> Motion {
+impl Known {
+    /// Brings the geom to where its body is; tells if that may go too far in one step.
+    fn follow(
+        &mut self,
+        key: BodyKey,
+        body: &Body,
+        h: f64,
+        margin: f64,
+        geom: &mut Told<'_>,
+    ) -> Option<Fast> {
+        let awake = body.is_enabled() && !body.is_quarantined();
+        if self.motion != Motion::Fixed && awake != (self.motion == Motion::Awake) {
+            self.motion = if awake { Motion::Awake } else { Motion::Asleep };
+            geom.set_awake(awake);
+        }
+        if self.pose_version != body.pose_version() {
+            self.pose_version = body.pose_version();
+            let mut frame = Frame { position: body.position(), rotation: body.rotation() };
+            if let Some(offset) = &self.offset {
+                let arm = frame.rotation * offset.position;
+                frame.position += arm;
+                frame.rotation = frame.rotation * offset.rotation.to_matrix();
+                self.arm = [arm.x as f32, arm.y as f32, arm.z as f32];
+            }
+            geom.move_geom(&frame);
+        }
+        if !awake {
+            return None;
+        }
+        let travel = body.linear_velocity().length() * h;
+        let ahead = if travel > margin { (travel - margin) as f32 } else { 0.0 };
+        if ahead != self.ahead {
+            self.ahead = ahead;
+            geom.set_ahead(ahead.min(self.thickness));
+        }
+        let fast = travel > f64::from(self.thickness) && self.motion == Motion::Awake;
+        fast.then(|| Fast { geom: self.key, body: key, start: body.pose() })
+    }
+}
+
+fn motion_of(body: &Body) -> Motion {
     if body.is_kinematic() {
         Motion::Fixed
     } else if body.is_enabled() && !body.is_quarantined() {

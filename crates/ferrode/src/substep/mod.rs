@@ -13,10 +13,11 @@ mod report;
 mod surfaces;
 
 use crate::{Error, Step, World};
+use contacts::Filled;
 use continuous::Fast;
 use ferrode_collide::pairs::{PairCache, PairSettings};
 use ferrode_dynamics::ContactManifold;
-use geoms::Known;
+use geoms::{Followed, Known};
 use surfaces::SurfaceTable;
 
 /// What `Substep` keeps of a world's shapes. Plain data: a clone steps to the same bits.
@@ -35,6 +36,9 @@ pub(crate) struct Pipeline {
     manifolds: Vec<ContactManifold>,
     surfaces: SurfaceTable,
     fast: Vec<Fast>,
+    /// What tasks found.
+    followed: Vec<Followed>,
+    filled: Vec<Filled>,
     /// Of the last step.
     max_depth: f64,
     points: usize,
@@ -52,6 +56,8 @@ impl Default for Pipeline {
             manifolds: Vec::new(),
             surfaces: SurfaceTable::default(),
             fast: Vec::new(),
+            followed: Vec::new(),
+            filled: Vec::new(),
             max_depth: 0.0,
             points: 0,
         }
@@ -68,12 +74,14 @@ impl World {
     }
 
     fn step_pipeline(&mut self, h: f64, pipeline: &mut Pipeline) -> Result<Step, Error> {
-        self.follow_bodies(h, pipeline);
-        self.update_pairs(pipeline);
-        self.fill_manifolds(pipeline);
+        let crew = self.dynamics.crew().clone();
+        self.follow_bodies(h, &crew, pipeline);
+        self.update_pairs(&crew, pipeline);
+        self.fill_manifolds(&crew, pipeline);
         let surfaces = &pipeline.surfaces.list;
         let dynamics = self.dynamics.step_with_manifolds(h, &mut pipeline.manifolds, surfaces)?;
-        pipeline.keep_impulses();
+        pipeline.keep_impulses(&crew);
+        crew.rest();
         self.stop_fast_bodies(pipeline)?;
         pipeline.seen_roll = Some(self.dynamics.roll_call().1);
         self.report_substep(pipeline);

@@ -11,9 +11,15 @@
 //! positions stay `f64` outside, so it makes no difference how far from the origin a body is.
 
 use super::manifold::to_f32;
+use crate::arena::Arena;
 use crate::body::Body;
+use core::sync::atomic::{AtomicBool, Ordering};
 use ferrode_math::simd::{NO_RECORD, Record};
+use ferrode_math::stage::{Crew, chunks};
 use ferrode_math::{Mat3, Quat, Vec3, real};
+
+/// Bodies of one task, in what is done body by body.
+pub(super) const SHARE: usize = 256;
 
 /// The bodies of a step in dense arrays.
 #[derive(Clone, Debug, Default)]
@@ -34,11 +40,19 @@ pub(super) struct SolverBodies {
     totals: Vec<Record>,
     /// v and ω as they are, at the start of the step; for what no force moves.
     pub motions: Vec<Record>,
+    /// Whether forces of the caller's act on a body.
+    pub pushed: Vec<bool>,
 }
 
 impl SolverBodies {
+    /// Starts a step; the slots are pushed then, and [filled in](Self::fill).
     pub fn clear(&mut self) {
         self.slots.clear();
+    }
+
+    fn resize(&mut self) {
+        let count = self.slots.len();
+        self.pushed.resize(count, false);
         for list in [
             &mut self.velocities,
             &mut self.deltas,
@@ -48,7 +62,7 @@ impl SolverBodies {
             &mut self.totals,
             &mut self.motions,
         ] {
-            list.clear();
+            list.resize(count, Record::ZERO);
         }
     }
 
@@ -56,62 +70,70 @@ impl SolverBodies {
         self.slots.len()
     }
 
-    /// Adds a body; `force` and `torque` are all that act on it but constraints.
-    pub fn push(&mut self, slot: u32, body: &Body, force: Vec3, torque: Vec3) {
-        self.slots.push(slot);
-        let (v, w) = (body.frame.linear_velocity, body.frame.angular_velocity);
-        let [a, b, c] = to_f32(v);
-        let [d, e, f] = to_f32(w);
-        self.motions.push(Record([a, b, c, d, e, f, 0.0, 0.0]));
-        self.deltas.push(Record::ZERO);
-        self.totals.push(Record::ZERO);
-        self.references.push(Record::ZERO);
-        if body.is_kinematic() || body.quarantined {
-            self.velocities.push(Record::ZERO);
-            self.scales.push(Record::ZERO);
-            self.accelerations.push(Record::ZERO);
-            return;
-        }
-        let s = body.inv_mass.sqrt();
-        let factor = inertia_factor(&body.frame.rotation, &body.inv_inertia);
-        let [s00, s10, s11, s20, s21, s22] = factor;
-        self.scales.push(Record([s, s00, s10, s11, s20, s21, s22, 0.0].map(|x| x as f32)));
-        let scaled = |linear: Vec3, angular: Vec3| {
-            let [a, b, c] = to_f32(linear);
-            let [d, e, f] = to_f32(angular);
-            Record([a, b, c, d, e, f, 0.0, 0.0])
-        };
-        self.velocities.push(scaled(v * (1.0 / s), solve_lower(&factor, w)));
-        // s F, and Sᵀ τ.
-        self.accelerations.push(scaled(force * s, mul_lower_transpose(&factor, torque)));
+    /// Takes the bodies of `slots` in, at the start of a step of `h` seconds.
+    pub fn fill(&mut self, crew: &Crew, world: &Arena<Body>, gravity: Vec3, h: f64) -> Gathered {
+        self.resize();
+        let (unusable, watched) = (AtomicBool::new(false), AtomicBool::new(false));
+        let Self { slots, velocities, deltas, scales, accelerations, references, totals, motions, pushed } =
+            self;
+        let moving = (chunks(velocities, SHARE), chunks(deltas, SHARE), chunks(references, SHARE));
+        let still = (chunks(scales, SHARE), chunks(accelerations, SHARE), chunks(motions, SHARE));
+        let lists = (moving, still, chunks(totals, SHARE), chunks(pushed, SHARE));
+        crew.each(lists, |share, (moving, still, totals, pushed)| {
+            let (velocities, deltas, references) = moving;
+            let (scales, accelerations, motions) = still;
+            deltas.fill(Record::ZERO);
+            references.fill(Record::ZERO);
+            totals.fill(Record::ZERO);
+            for (i, slot) in slots[share * SHARE..].iter().take(velocities.len()).enumerate() {
+                let body = world.at(*slot);
+                if body.enabled && !body.quarantined && !body.is_finite() {
+                    unusable.store(true, Ordering::Relaxed);
+                }
+                if body.moved.is_some() {
+                    watched.store(true, Ordering::Relaxed);
+                }
+                pushed[i] = body.force != Vec3::ZERO || body.torque != Vec3::ZERO;
+                let known = Known::new(body, gravity, h);
+                (velocities[i], scales[i]) = (known.velocity, known.scale);
+                (accelerations[i], motions[i]) = (known.acceleration, known.motion);
+            }
+        });
+        Gathered { unusable: unusable.into_inner(), watched: watched.into_inner() }
     }
 
     /// Begins a substep of `h` seconds: forces act, and the impulses that held in the one before act again.
     ///
     /// What the constraints did to a body in a substep is the sum of their impulses, so it needs no pass over the
     /// constraints to apply them again.
-    pub fn integrate_velocities(&mut self, h: f32, first: bool) {
-        let lists = (self.velocities.iter_mut())
-            .zip(&mut self.references)
-            .zip(&self.accelerations)
-            .zip(&mut self.totals);
-        for (((u, reference), a), total) in lists {
-            for k in 0..6 {
-                let impulse = if first { 0.0 } else { u.0[k] - reference.0[k] };
-                total.0[k] += impulse;
-                reference.0[k] = u.0[k] + h * a.0[k];
-                u.0[k] = reference.0[k] + impulse;
+    pub fn integrate_velocities(&mut self, crew: &Crew, h: f32, first: bool) {
+        let Self { velocities, references, totals, accelerations, .. } = self;
+        let accelerations = accelerations.as_slice();
+        let lists = (chunks(velocities, SHARE), chunks(references, SHARE), chunks(totals, SHARE));
+        crew.each(lists, |share, (velocities, references, totals)| {
+            let lists =
+                velocities.iter_mut().zip(references).zip(&accelerations[share * SHARE..]).zip(totals);
+            for (((u, reference), a), total) in lists {
+                for k in 0..8 {
+                    let impulse = if first { 0.0 } else { u.0[k] - reference.0[k] };
+                    total.0[k] += impulse;
+                    reference.0[k] = u.0[k] + h * a.0[k];
+                    u.0[k] = reference.0[k] + impulse;
+                }
             }
-        }
+        });
     }
 
     /// Moves the bodies by `h` seconds.
-    pub fn integrate_positions(&mut self, h: f32) {
-        for (delta, u) in self.deltas.iter_mut().zip(&self.velocities) {
-            for k in 0..6 {
-                delta.0[k] += h * u.0[k];
+    pub fn integrate_positions(&mut self, crew: &Crew, h: f32) {
+        let velocities = self.velocities.as_slice();
+        crew.each(chunks(&mut self.deltas, SHARE), |share, deltas| {
+            for (delta, u) in deltas.iter_mut().zip(&velocities[share * SHARE..]) {
+                for k in 0..8 {
+                    delta.0[k] += h * u.0[k];
+                }
             }
-        }
+        });
     }
 
     /// What the step did to a body: change of velocity by constraints, displacement and rotation, in world units.
@@ -129,6 +151,28 @@ impl SolverBodies {
             displacement: Vec3::new(delta[0], delta[1], delta[2]) * s,
             rotation: mul_lower(&factor, Vec3::new(delta[3], delta[4], delta[5])),
         }
+    }
+
+    /// Gives a body the velocity and pose at the end of a step of `h` seconds.
+    pub fn advance(&self, place: usize, body: &mut Body, gravity: Vec3, h: f64) {
+        let frame = &mut body.frame;
+        if body.inv_mass > 0.0 {
+            let outcome = self.outcome(place);
+            let force = if body.gravity_mode { body.force + gravity * body.mass.mass } else { body.force };
+            let torque = self.free_rotation(place, h);
+            frame.linear_velocity += force * (body.inv_mass * h) + outcome.linear;
+            frame.angular_velocity += torque + outcome.angular;
+            frame.position += outcome.displacement;
+            let q = rotation_of(outcome.rotation) * frame.quaternion;
+            frame.quaternion = q.normalized().unwrap_or(q);
+        } else {
+            frame.position += frame.linear_velocity * h;
+            let q = rotation_of(frame.angular_velocity * h) * frame.quaternion;
+            frame.quaternion = q.normalized().unwrap_or(q);
+        }
+        frame.rotation = frame.quaternion.to_matrix();
+        body.pose_version = body.pose_version.wrapping_add(1);
+        crate::integrate::limit_angular_speed(body);
     }
 
     /// The displacement and rotation of a body so far, in world units.
@@ -168,6 +212,53 @@ impl SolverBodies {
     /// The record that the kernels read for a body: none for what no force moves.
     pub fn record(&self, body: u32) -> u32 {
         if self.is_movable(body) { body } else { NO_RECORD }
+    }
+}
+
+/// What was seen of the bodies taken in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gathered {
+    /// One is not finite.
+    pub unusable: bool,
+    /// One has a callback.
+    pub watched: bool,
+}
+
+/// A body at the start of a step.
+struct Known {
+    velocity: Record,
+    scale: Record,
+    acceleration: Record,
+    motion: Record,
+}
+
+impl Known {
+    fn new(body: &Body, gravity: Vec3, h: f64) -> Self {
+        let (v, w) = (body.frame.linear_velocity, body.frame.angular_velocity);
+        let record = |linear: Vec3, angular: Vec3| {
+            let [a, b, c] = to_f32(linear);
+            let [d, e, f] = to_f32(angular);
+            Record([a, b, c, d, e, f, 0.0, 0.0])
+        };
+        let motion = record(v, w);
+        if body.is_kinematic() || body.quarantined {
+            return Self { velocity: Record::ZERO, scale: Record::ZERO, acceleration: Record::ZERO, motion };
+        }
+        let mut force = body.force;
+        if body.gravity_mode {
+            force += gravity * body.mass.mass;
+        }
+        let torque = body.torque + body.gyroscopic(h);
+        let s = body.inv_mass.sqrt();
+        let factor = inertia_factor(&body.frame.rotation, &body.inv_inertia);
+        let [s00, s10, s11, s20, s21, s22] = factor;
+        Self {
+            velocity: record(v * (1.0 / s), solve_lower(&factor, w)),
+            scale: Record([s, s00, s10, s11, s20, s21, s22, 0.0].map(|x| x as f32)),
+            // s F, and Sᵀ τ.
+            acceleration: record(force * s, mul_lower_transpose(&factor, torque)),
+            motion,
+        }
     }
 }
 

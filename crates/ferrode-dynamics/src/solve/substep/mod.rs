@@ -18,6 +18,7 @@ mod bodies;
 mod colour;
 mod contact;
 mod joints;
+mod keys;
 mod manifold;
 mod settings;
 mod sleep;
@@ -29,19 +30,20 @@ pub use settings::SubstepSettings;
 pub use soft::Spring;
 
 use crate::arena::NIL;
-use crate::body::BodyKey;
+use crate::body::{Body, BodyKey};
+use crate::ends::Frame;
 use crate::foreign::MovedObserver;
 use crate::joint::JointKind;
 use crate::timing::Phase;
 use crate::{Error, StepReport, Surface, World};
 use articulation::{Articulations, Mode, Task};
-use bodies::{SolverBodies, rotation_of};
+use bodies::{SHARE, SolverBodies};
 use colour::Colouring;
-use contact::{Contacts, ManifoldKey, NOT_SOLVED, Pass};
+use contact::{Contacts, Pass};
 use ferrode_math::Vec3;
 use ferrode_math::simd::Level;
+use ferrode_math::stage::chunks;
 use joints::{JointContext, JointMemory, Joints, When};
-use manifold::STATIC;
 use surface::SurfaceCoefficients;
 
 /// Memory that is kept from step to step. Only the joints' impulses hold something of the past.
@@ -55,11 +57,12 @@ pub(crate) struct Workspace {
     joints: Joints,
     articulations: Articulations,
     colouring: Colouring,
+    keyed: Vec<keys::Keyed>,
     surfaces: Vec<SurfaceCoefficients>,
     /// Dense place and serial of each of the world's bodies.
     places: Vec<(u32, u32)>,
-    /// Whether forces of the caller's act on a body.
-    pushed: Vec<bool>,
+    /// Bodies, by tasks, that a step has left not finite.
+    spoilt: Vec<Vec<u32>>,
     joint_seen: Vec<bool>,
     /// Contact joints as manifolds, their joints and surfaces; with those of the caller in front.
     loose: Vec<ContactManifold>,
@@ -117,7 +120,7 @@ impl World {
         manifolds: &mut [ContactManifold],
         surfaces: &[Surface],
     ) -> Result<StepReport, Error> {
-        self.step_substep(h, manifolds, surfaces, &mut |_, _| {})
+        self.step_substep(h, manifolds, surfaces, None)
     }
 
     pub(crate) fn step_substep(
@@ -125,18 +128,15 @@ impl World {
         h: f64,
         manifolds: &mut [ContactManifold],
         surfaces: &[Surface],
-        moved: MovedObserver<'_>,
+        moved: Option<MovedObserver<'_>>,
     ) -> Result<StepReport, Error> {
         crate::softness::step_size(h)?;
-        for manifold in manifolds.iter() {
-            manifold::check_surface(manifold, surfaces)?;
-        }
+        keys::check_surfaces(&self.crew, manifolds, surfaces)?;
         self.timing.begin();
         let mut report = StepReport::default();
         let mut work = core::mem::take(&mut self.scratch.substep);
-        self.quarantine_unusable_of_roll(&mut report);
         self.convert_surfaces(h, surfaces, &mut work);
-        self.gather_awake(h, manifolds, &mut work);
+        let watched = self.gather_awake(h, manifolds, &mut work, &mut report);
         if work.bodies.len() > 0 {
             if work.loose.is_empty() {
                 self.solve_substeps(h, manifolds, &mut work);
@@ -151,7 +151,7 @@ impl World {
             report.bodies = work.bodies.len();
             report.rows = work.contacts.row_count() + work.joints.row_count();
             report.largest_island_rows = report.rows;
-            self.move_awake(h, &mut work, moved, &mut report);
+            self.move_awake(h, &mut work, moved, watched, &mut report);
             self.put_islands_to_sleep(h, &mut work);
             self.timing.spent_on(Phase::Integrate);
         }
@@ -169,17 +169,24 @@ impl World {
             .extend(surfaces.iter().map(|s| SurfaceCoefficients::new(s, &ctx, n, settings.push_out_speed)));
     }
 
-    /// Wakes what has to be awake, and copies awake bodies, joints and contacts into the workspace.
-    fn gather_awake(&mut self, h: f64, manifolds: &[ContactManifold], work: &mut Workspace) {
+    /// Takes out what is not finite, wakes what has to be awake, and copies awake bodies, joints and contacts into the workspace.
+    /// Returns whether a body has a callback.
+    fn gather_awake(
+        &mut self,
+        h: f64,
+        manifolds: &[ContactManifold],
+        work: &mut Workspace,
+        report: &mut StepReport,
+    ) -> bool {
         loop {
-            self.gather_bodies(h, work);
+            let watched = self.gather_bodies(h, work, report);
             self.gather_joints(h, manifolds, work);
             let all = core::mem::take(&mut work.all);
             let list = if work.loose.is_empty() { manifolds } else { &all };
             self.colour_manifolds(list, work);
             work.all = all;
             if work.waking.is_empty() {
-                return;
+                return watched;
             }
             let mut waking = core::mem::take(&mut work.waking);
             self.wake_islands(&mut waking);
@@ -187,42 +194,41 @@ impl World {
         }
     }
 
-    fn gather_bodies(&mut self, h: f64, work: &mut Workspace) {
-        // Bodies that were enabled by hand wake those that fell asleep with them.
-        let mut waking = core::mem::take(&mut work.waking);
-        let returned = |slot: &u32| self.bodies.get(*slot).is_some_and(|b| b.enabled && b.sleep_group != 0);
-        let returned: Vec<u32> = self.roll.slots().filter(returned).collect();
-        for slot in returned {
-            self.rouse(slot, &mut waking);
-        }
-        self.wake_islands(&mut waking);
-        work.waking = waking;
-
-        for slot in &work.bodies.slots {
-            work.places[*slot as usize] = (NIL, 0);
-        }
-        work.bodies.clear();
-        work.pushed.clear();
-        work.places.resize(self.bodies.capacity(), (NIL, 0));
-        let gravity = self.params.gravity;
-        let bodies = &self.bodies;
-        self.roll.retain(|slot| bodies.get(slot).is_some_and(|body| body.enabled || body.quarantined));
-        for index in self.roll.slots() {
-            let body = bodies.at(index);
-            work.places[index as usize] = (work.bodies.len() as u32, bodies.key_of(index).serial as u32);
-            work.pushed.push(body.force != Vec3::ZERO || body.torque != Vec3::ZERO);
-            let mut force = body.force;
-            if body.gravity_mode {
-                force += gravity * body.mass.mass;
+    fn gather_bodies(&mut self, h: f64, work: &mut Workspace, report: &mut StepReport) -> bool {
+        loop {
+            // Bodies that were enabled by hand wake those that fell asleep with them.
+            let mut waking = core::mem::take(&mut work.waking);
+            let returned =
+                |slot: &u32| self.bodies.get(*slot).is_some_and(|b| b.enabled && b.sleep_group != 0);
+            let returned: Vec<u32> = self.roll.slots().filter(returned).collect();
+            for slot in returned {
+                self.rouse(slot, &mut waking);
             }
-            let torque = body.torque + body.gyroscopic(h);
-            work.bodies.push(index, body, force, torque);
+            self.wake_islands(&mut waking);
+            work.waking = waking;
+
+            for slot in &work.bodies.slots {
+                work.places[*slot as usize] = (NIL, 0);
+            }
+            work.bodies.clear();
+            work.places.resize(self.bodies.capacity(), (NIL, 0));
+            let bodies = &self.bodies;
+            self.roll.retain(|slot| bodies.get(slot).is_some_and(|body| body.enabled || body.quarantined));
+            for slot in self.roll.slots() {
+                work.places[slot as usize] = (work.bodies.len() as u32, bodies.key_of(slot).serial as u32);
+                work.bodies.slots.push(slot);
+            }
+            debug_assert_eq!(
+                work.bodies.len(),
+                self.bodies().filter(|(_, body)| body.enabled || body.quarantined).count(),
+                "a body that is awake is not on the roll"
+            );
+            let found = work.bodies.fill(&self.crew, bodies, self.params.gravity, h);
+            if !found.unusable {
+                return found.watched;
+            }
+            self.quarantine_unusable_of_roll(report);
         }
-        debug_assert_eq!(
-            work.bodies.len(),
-            self.bodies().filter(|(_, body)| body.enabled || body.quarantined).count(),
-            "a body that is awake is not on the roll"
-        );
     }
 
     /// Collects the joints of awake bodies. Contact joints become manifolds.
@@ -295,69 +301,6 @@ impl World {
         key.map_or(Vec3::ZERO, |key| self.bodies.at(key.0.index).frame.position)
     }
 
-    /// Finds the bodies and the colour of each manifold.
-    fn colour_manifolds(&mut self, manifolds: &[ContactManifold], work: &mut Workspace) {
-        work.colouring.begin(work.bodies.len());
-        work.contacts.keys.clear();
-        work.contacts.has_bounce = false;
-        for manifold in manifolds {
-            let mut key = ManifoldKey { bodies: [NIL; 2], sort: NOT_SOLVED };
-            if manifold.count > 0 && !manifold.is_ignored() {
-                let places = manifold.bodies.map(|(slot, serial)| match work.places.get(slot as usize) {
-                    Some((place, s)) if *place != NIL && *s == serial => *place,
-                    _ => NIL,
-                });
-                let movable = places.map(|place| work.bodies.is_movable(place));
-                if movable[0] || movable[1] {
-                    match self.sleeper(manifold, places, work) {
-                        Sleeper::Gone => {}
-                        Sleeper::Asleep(slot) => {
-                            self.rouse(slot, &mut work.waking);
-                            work.waking.push(0);
-                        }
-                        Sleeper::None => {
-                            let coloured = [0, 1].map(|side| movable[side].then_some(places[side]));
-                            let colour = work.colouring.colour(coloured);
-                            let surface = &work.surfaces[manifold.surface as usize];
-                            let kinematic = (0..2).any(|side| places[side] != NIL && !movable[side]);
-                            let special = surface.special || kinematic;
-                            work.contacts.has_bounce |= surface.bounce > 0.0;
-                            key.bodies = places;
-                            key.sort = contact::sort_key(colour, special, manifold.len());
-                        }
-                    }
-                } else if let Some(side) = (0..2).find(|side| places[*side] != NIL)
-                    && work.bodies.motions[places[side] as usize].0 != [0.0; 8]
-                    && let Sleeper::Asleep(slot) = self.sleeper(manifold, places, work)
-                {
-                    // A kinematic body runs into a sleeper.
-                    self.rouse(slot, &mut work.waking);
-                    work.waking.push(0);
-                }
-            }
-            work.contacts.keys.push(key);
-        }
-        work.contacts.arrange();
-    }
-
-    /// Whether the body of a manifold that is not among the awake ones sleeps, or is no more.
-    fn sleeper(&self, manifold: &ContactManifold, places: [u32; 2], work: &Workspace) -> Sleeper {
-        let _ = work;
-        for ((slot, serial), place) in manifold.bodies.into_iter().zip(places) {
-            if slot == STATIC || place != NIL {
-                continue;
-            }
-            let Some(body) = self.bodies.get(slot) else { return Sleeper::Gone };
-            if self.bodies.key_of(slot).serial as u32 != serial {
-                return Sleeper::Gone;
-            }
-            if !body.is_kinematic() && manifold.touches() {
-                return Sleeper::Asleep(slot);
-            }
-        }
-        Sleeper::None
-    }
-
     fn solve_substeps(&mut self, h: f64, manifolds: &mut [ContactManifold], work: &mut Workspace) {
         let settings = self.params.substep;
         let level = settings.lanes.unwrap_or_else(Level::best);
@@ -365,8 +308,10 @@ impl World {
         let part = h / n;
         let ratio = if work.last_h > 0.0 { (h / work.last_h) as f32 } else { 1.0 };
         let Workspace { bodies, contacts, joints, articulations, surfaces, memory, .. } = work;
+        let crew = &self.crew;
         contacts.prepare(
             level,
+            crew,
             &contact::Context {
                 bodies,
                 manifolds,
@@ -381,26 +326,26 @@ impl World {
         self.timing.spent_on(Phase::Assembly);
         let dt = part as f32;
         for i in 0..settings.substeps {
-            bodies.integrate_velocities(dt, i == 0);
+            bodies.integrate_velocities(crew, dt, i == 0);
             if i == 0 {
-                contacts.pass(level, Pass::WarmStart, bodies, (dt, 0.0));
+                contacts.pass(level, crew, Pass::WarmStart, bodies, (dt, 0.0));
             }
             let when = if i == 0 { When::First } else { When::Next };
             joints.rewrite(when, &context, bodies, &self.bodies, &mut self.joints, memory);
             articulations.pass(level, Task::Load(joints, Some(dt)), bodies);
             joints.solve(false, bodies);
-            contacts.pass(level, Pass::Biased, bodies, (dt, dt * i as f32));
+            contacts.pass(level, crew, Pass::Biased, bodies, (dt, dt * i as f32));
             articulations.pass(level, Task::Solve(Mode::Biased), bodies);
             articulations.pass(level, Task::Bend(dt), bodies);
-            bodies.integrate_positions(dt);
+            bodies.integrate_positions(crew, dt);
             joints.solve(true, bodies);
-            contacts.pass(level, Pass::Relax, bodies, (dt, dt * (i + 1) as f32));
+            contacts.pass(level, crew, Pass::Relax, bodies, (dt, dt * (i + 1) as f32));
             articulations.pass(level, Task::Solve(Mode::Relax), bodies);
             articulations.pass(level, Task::Store(joints), bodies);
             joints.sum_feedback();
         }
         if contacts.has_bounce {
-            contacts.pass(level, Pass::Restitution, bodies, (dt, h as f32));
+            contacts.pass(level, crew, Pass::Restitution, bodies, (dt, h as f32));
             articulations.pass(level, Task::Solve(Mode::Relax), bodies);
             articulations.pass(level, Task::Store(joints), bodies);
         }
@@ -448,10 +393,14 @@ impl World {
         &mut self,
         h: f64,
         work: &mut Workspace,
-        observer: MovedObserver<'_>,
+        mut observer: Option<MovedObserver<'_>>,
+        watched: bool,
         report: &mut StepReport,
     ) {
         let gravity = self.params.gravity;
+        if !watched && observer.is_none() && self.crew.threads() > 1 && work.bodies.len() > SHARE {
+            return self.move_awake_together(h, work, report);
+        }
         for (place, slot) in work.bodies.slots.iter().enumerate() {
             // An observer may have destroyed the body.
             let Some(body) = self.bodies.get_mut(*slot) else { continue };
@@ -459,50 +408,57 @@ impl World {
                 continue;
             }
             let before = body.frame;
-            let frame = &mut body.frame;
-            if body.inv_mass > 0.0 {
-                let outcome = work.bodies.outcome(place);
-                let force =
-                    if body.gravity_mode { body.force + gravity * body.mass.mass } else { body.force };
-                let torque = work.bodies.free_rotation(place, h);
-                frame.linear_velocity += force * (body.inv_mass * h) + outcome.linear;
-                frame.angular_velocity += torque + outcome.angular;
-                frame.position += outcome.displacement;
-                let q = rotation_of(outcome.rotation) * frame.quaternion;
-                frame.quaternion = q.normalized().unwrap_or(q);
-            } else {
-                frame.position += frame.linear_velocity * h;
-                let q = rotation_of(frame.angular_velocity * h) * frame.quaternion;
-                frame.quaternion = q.normalized().unwrap_or(q);
-            }
-            frame.rotation = frame.quaternion.to_matrix();
-            body.pose_version = body.pose_version.wrapping_add(1);
-            crate::integrate::limit_angular_speed(body);
+            work.bodies.advance(place, body, gravity, h);
             let key = self.body_key(*slot);
             let body = self.bodies.at_mut(*slot);
             if let Some(moved) = body.moved.clone() {
                 moved(key, body);
             }
-            observer(self, key);
+            if let Some(observer) = &mut observer {
+                observer(self, key);
+            }
             let Ok(body) = self.body_mut(key) else { continue };
-            let damping = body.damping;
-            damping.apply(&mut body.frame.linear_velocity, &mut body.frame.angular_velocity);
-            body.force = Vec3::ZERO;
-            body.torque = Vec3::ZERO;
-            if !body.is_finite() {
-                body.quarantine(Some(&before));
+            if !settle(body, &before) {
                 report.quarantined.push(key);
             }
         }
     }
+
+    /// As [`World::move_awake`], with all threads; there is nobody to tell of each body.
+    fn move_awake_together(&mut self, h: f64, work: &mut Workspace, report: &mut StepReport) {
+        let (gravity, crew) = (self.params.gravity, self.crew.clone());
+        let slots = self.bodies.slots_mut();
+        let Workspace { bodies, places, spoilt, .. } = work;
+        spoilt.resize_with(slots.len().div_ceil(SHARE), Vec::new);
+        crew.each((chunks(slots, SHARE), chunks(spoilt, 1)), |share, (slots, spoilt)| {
+            let spoilt = &mut spoilt[0];
+            spoilt.clear();
+            for (slot, (place, _)) in slots.iter_mut().zip(&places[share * SHARE..]) {
+                let Some(body) = slot.value.as_mut().filter(|body| *place != NIL && !body.quarantined) else {
+                    continue;
+                };
+                let before = body.frame;
+                bodies.advance(*place as usize, body, gravity, h);
+                if !settle(body, &before) {
+                    spoilt.push(*place);
+                }
+            }
+        });
+        let mut places: Vec<u32> = spoilt.iter().flatten().copied().collect();
+        places.sort_unstable();
+        report.quarantined.extend(places.iter().map(|place| self.body_key(bodies.slots[*place as usize])));
+    }
 }
 
-/// What became of a body that is not among the awake ones.
-enum Sleeper {
-    /// There is none, or it counts as a part of the static world.
-    None,
-    /// It sleeps, and is touched.
-    Asleep(u32),
-    /// It was destroyed.
-    Gone,
+/// Damping, cleared accumulators; false for a body that isn't finite and was put back to where it was before.
+fn settle(body: &mut Body, before: &Frame) -> bool {
+    let damping = body.damping;
+    damping.apply(&mut body.frame.linear_velocity, &mut body.frame.angular_velocity);
+    body.force = Vec3::ZERO;
+    body.torque = Vec3::ZERO;
+    let sound = body.is_finite();
+    if !sound {
+        body.quarantine(Some(before));
+    }
+    sound
 }

@@ -53,7 +53,7 @@ impl World {
             let quiet = if body.is_kinematic() {
                 body.frame.linear_velocity == Vec3::ZERO && body.frame.angular_velocity == Vec3::ZERO
             } else {
-                !work.pushed[place] && f64::from(work.bodies.energy_per_mass(place)) < limit
+                !work.bodies.pushed[place] && f64::from(work.bodies.energy_per_mass(place)) < limit
             };
             body.rest_time = if quiet { body.rest_time + h } else { 0.0 };
             ready |= body.rest_time >= settings.sleep_time && !body.is_kinematic();

@@ -6,6 +6,7 @@ use super::vector::{Motion, lanes, load3, mul_lower_transpose, store3};
 use super::{Batch, Block3};
 use crate::solve::substep::manifold::MANIFOLD_POINTS;
 use crate::solve::substep::surface::SurfaceCoefficients;
+use ferrode_math::Vector3;
 use ferrode_math::simd::Lanes;
 
 /// A bound on an impulse: proportional to the normal impulse, plus a constant. One of the two is zero.
@@ -52,14 +53,14 @@ pub(super) fn prepare<'s, L: Lanes>(
 ) -> Extra<L> {
     let zero = L::ZERO.store();
     // Relative velocity, at arms from the centres, of what no force moves.
-    let relative = |arms: [ferrode_math::Vector3<L>; 2]| {
+    let relative = |arms: [Vector3<L>; 2]| {
         let [a, b] = still;
         a.linear + a.angular.cross(arms[0]) - b.linear - b.angular.cross(arms[1])
     };
     let mut drift = [zero; MANIFOLD_POINTS];
     let mut approach = [zero; MANIFOLD_POINTS];
     let lift = lanes::<L>(|lane| surface(lane).motion[2]);
-    let [s1, s2] = batch.scale.map(|s| L::load(&s));
+    let (s1, s2) = (L::load(&batch.scale[0]), L::load(&batch.scale[1]));
     let linear = sides.normal.dot(velocities[0].linear * s1 - velocities[1].linear * s2);
     for k in 0..batch.count as usize {
         let d = sides.normal.dot(relative(sides.arms[k])) * sides.present[k];
@@ -90,13 +91,10 @@ pub(super) fn prepare<'s, L: Lanes>(
         .store(),
     };
     let roll = |axis: usize| move |s: &SurfaceCoefficients| s.rolling.map_or(0.0, |r| r[axis]);
-    let rows = sides
-        .tangents
-        .map(|t| [mul_lower_transpose(&sides.scales[0], t), -mul_lower_transpose(&sides.scales[1], t)]);
-    let rolling_mass = rows.map(|row| {
-        let k = row[0].length_squared() + row[1].length_squared();
-        L::select(L::ZERO.lt(k), L::ONE / k, L::ZERO).store()
-    });
+    // By name: closures within `map` don't inherit the instruction set.
+    let [t1, t2] = sides.tangents;
+    let rows = [rolling_row(&sides.scales, t1), rolling_row(&sides.scales, t2)];
+    let rolling_mass = [rolling_mass(&rows[0]), rolling_mass(&rows[1])];
     let own = |f: &dyn Fn((f32, f32)) -> f32| lanes::<L>(|lane| surface(lane).softness.map_or(-1.0, f));
     let (rate, gamma) = (own(&|s| s.0), own(&|s| s.1));
     batch.bias_rate = L::select(L::ZERO.le(rate), rate, L::load(&batch.bias_rate)).store();
@@ -110,13 +108,25 @@ pub(super) fn prepare<'s, L: Lanes>(
         bounds: [bound(&|s| s.mu, 0), bound(&|s| s.mu2, 1), bound(&roll(2), 2)],
         slip: [0, 1].map(|axis: usize| lanes::<L>(|lane| surface(lane).slip[axis]).store()),
         gamma: gamma.max(L::ZERO).store(),
-        rolling: rows.map(|row| row.map(store3)),
+        rolling: [[store3(rows[0][0]), store3(rows[0][1])], [store3(rows[1][0]), store3(rows[1][1])]],
         rolling_mass,
-        rolling_impulse: sides.tangents.map(|t| sides.rolling.dot(t).store()),
+        rolling_impulse: [sides.rolling.dot(t1).store(), sides.rolling.dot(t2).store()],
         rolling_bounds: [bound(&roll(0), 0), bound(&roll(1), 1)],
         approach,
         peak: [zero; MANIFOLD_POINTS],
         bounce: lanes::<L>(|lane| surface(lane).bounce).store(),
         bounce_velocity: lanes::<L>(|lane| surface(lane).bounce_velocity).store(),
     }
+}
+
+/// J̃ of rolling about a tangent.
+#[inline(always)]
+fn rolling_row<L: Lanes>(scales: &[[L; 8]; 2], t: Vector3<L>) -> [Vector3<L>; 2] {
+    [mul_lower_transpose(&scales[0], t), -mul_lower_transpose(&scales[1], t)]
+}
+
+#[inline(always)]
+fn rolling_mass<L: Lanes>(row: &[Vector3<L>; 2]) -> L::Block {
+    let k = row[0].length_squared() + row[1].length_squared();
+    L::select(L::ZERO.lt(k), L::ONE / k, L::ZERO).store()
 }

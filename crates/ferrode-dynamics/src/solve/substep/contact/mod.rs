@@ -23,6 +23,7 @@ use super::surface::SurfaceCoefficients;
 use core::any::Any;
 use core::ops::Range;
 use ferrode_math::simd::{Kernel, Lanes, Level, dispatch_at};
+use ferrode_math::stage::{Crew, Exclusive, chunks};
 
 pub(super) use extra::Extra;
 
@@ -58,10 +59,11 @@ struct FrictionRows<B> {
     radius: B,
 }
 
-/// As many manifolds as there are lanes; no movable body is in two of them.
-#[derive(Clone, Copy, Debug)]
+/// As many manifolds as there are lanes; no movable body is in two of them. Which bodies, [`Batches::bodies`] tells.
+///
+/// Places stay from step to step: what is beyond `count` and, without `special`, in `extra` is of earlier ones.
+#[derive(Debug)]
 struct Batch<L: Lanes> {
-    bodies: [L::Index; 2],
     normal: Block3<L>,
     tangent: Block3<L>,
     /// Square roots of the inverse masses.
@@ -74,26 +76,60 @@ struct Batch<L: Lanes> {
     friction: FrictionRows<L::Block>,
     /// Points of the manifold that has most.
     count: u32,
-    /// Place in the list of extras, for manifolds with more than plain friction; or `NO_EXTRA`.
-    extra: u32,
-    /// Places in the order of manifolds.
-    range: (u32, u32),
+    /// Whether the manifolds have more than plain friction.
+    special: bool,
+    extra: Option<Box<Extra<L>>>,
 }
 
-const NO_EXTRA: u32 = u32::MAX;
+impl<L: Lanes> Batch<L> {
+    fn blank() -> Self {
+        let (one, three) = (L::Block::default(), Block3::<L>::default());
+        Self {
+            normal: three,
+            tangent: three,
+            scale: [one; 2],
+            bias_rate: one,
+            mass_scale: one,
+            impulse_scale: one,
+            push_out: one,
+            points: Default::default(),
+            friction: FrictionRows::default(),
+            count: 0,
+            special: false,
+            extra: None,
+        }
+    }
+}
+
+/// Which manifolds a batch has.
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    /// Places in the order of manifolds.
+    first: u32,
+    end: u32,
+    special: bool,
+}
 
 /// Batches of one kind of lanes.
 #[derive(Debug)]
 struct Batches<L: Lanes> {
     list: Vec<Batch<L>>,
-    extras: Vec<Extra<L>>,
+    /// For each batch.
+    spans: Vec<Span>,
+    /// The bodies of each batch, in groups by colour.
+    bodies: Exclusive<L>,
     /// The batches of each colour, the overflow last.
     colours: Vec<Range<usize>>,
 }
 
 impl<L: Lanes> Default for Batches<L> {
     fn default() -> Self {
-        Self { list: Vec::new(), extras: Vec::new(), colours: vec![0..0; COLOURS + 1] }
+        Self {
+            list: Vec::new(),
+            spans: Vec::new(),
+            bodies: Exclusive::default(),
+            colours: vec![0..0; COLOURS + 1],
+        }
     }
 }
 
@@ -119,12 +155,21 @@ pub(super) struct Contacts {
 pub(super) struct ManifoldKey {
     /// Dense places, or `u32::MAX`.
     pub bodies: [u32; 2],
+    /// Whether forces move them.
+    pub movable: [bool; 2],
     /// Colour, kind and number of points, in the order of solving; `NOT_SOLVED` for one without points or movable bodies.
     pub sort: u16,
 }
 
-/// The key of a manifold that is left out.
+impl ManifoldKey {
+    /// The key of a manifold that is not solved.
+    pub const LEFT_OUT: Self = Self { bodies: [u32::MAX; 2], movable: [false; 2], sort: NOT_SOLVED };
+}
+
+/// What sorts a manifold out.
 pub(super) const NOT_SOLVED: u16 = u16::MAX;
+/// Points of a manifold whose sorting key is that of its colour alone, if it is a plain one.
+pub(super) const MOST_POINTS: usize = MANIFOLD_POINTS;
 /// Kinds of manifolds within a colour: plain and special ones with 4, 3, 2, 1 points.
 const KINDS: usize = 8;
 
@@ -191,26 +236,32 @@ impl Contacts {
     }
 
     /// Makes the rows of all manifolds.
-    pub fn prepare(&mut self, level: Level, context: &Context<'_>) {
-        dispatch_at(level, Prepare { contacts: self, context, colours: 0..COLOURS, wide: true });
-        dispatch_at(
-            Level::Scalar,
-            Prepare { contacts: self, context, colours: OVERFLOW..OVERFLOW + 1, wide: false },
-        );
+    pub fn prepare(&mut self, level: Level, crew: &Crew, context: &Context<'_>) {
+        dispatch_at(level, Prepare { contacts: self, crew, context, colours: 0..COLOURS, wide: true });
+        let colours = OVERFLOW..OVERFLOW + 1;
+        dispatch_at(Level::Scalar, Prepare { contacts: self, crew, context, colours, wide: false });
     }
 
     /// Makes a pass over all manifolds, colour after colour, the overflow last.
-    pub fn pass(&mut self, level: Level, pass: Pass, bodies: &mut SolverBodies, (h, elapsed): (f32, f32)) {
+    pub fn pass(
+        &mut self,
+        level: Level,
+        crew: &Crew,
+        pass: Pass,
+        bodies: &mut SolverBodies,
+        (h, elapsed): (f32, f32),
+    ) {
         if self.order.is_empty() {
             return;
         }
         if let Some(batches) = &mut self.wide {
-            dispatch_at(level, sweep::Sweep { batches: &mut **batches, bodies, pass, h, elapsed });
+            dispatch_at(level, sweep::Sweep { batches: &mut **batches, crew, bodies, pass, h, elapsed });
         }
         if self.starts[OVERFLOW] != self.starts[OVERFLOW + 1]
             && let Some(batches) = &mut self.narrow
         {
-            dispatch_at(Level::Scalar, sweep::Sweep { batches: &mut **batches, bodies, pass, h, elapsed });
+            let batches = &mut **batches;
+            dispatch_at(Level::Scalar, sweep::Sweep { batches, crew, bodies, pass, h, elapsed });
         }
     }
 
@@ -228,6 +279,7 @@ impl Contacts {
 /// Makes batches of some colours.
 struct Prepare<'a> {
     contacts: &'a mut Contacts,
+    crew: &'a Crew,
     context: &'a Context<'a>,
     colours: Range<usize>,
     wide: bool,
@@ -244,22 +296,51 @@ impl Kernel for Prepare<'_> {
             *place = Some(Box::new(Batches::<L>::default()));
         }
         let Some(batches) = place.as_mut().and_then(|b| b.downcast_mut::<Batches<L>>()) else { return };
-        batches.list.clear();
-        batches.extras.clear();
-        batches.colours.fill(0..0);
+        let Batches { list, spans, bodies, colours } = batches;
+        spans.clear();
+        colours.fill(0..0);
         for colour in self.colours {
-            let first = batches.list.len();
-            let (mut at, end) = (starts[colour] as usize, starts[colour + 1] as usize);
-            let plain_end = at + order[at..end].partition_point(|i| !is_special(keys[*i as usize].sort));
-            while at < end {
-                let stop = (at + L::LANES).min(if at < plain_end { plain_end } else { end });
-                prepare::push_batch(batches, self.context, keys, order, at..stop, at >= plain_end);
-                at = stop;
+            let first_batch = spans.len();
+            let (mut first, end) = (starts[colour], starts[colour + 1]);
+            let manifolds = &order[first as usize..end as usize];
+            let plain = manifolds.partition_point(|i| !is_special(keys[*i as usize].sort));
+            let plain_end = first + plain as u32;
+            while first < end {
+                let special = first >= plain_end;
+                let stop = (first + L::LANES as u32).min(if special { end } else { plain_end });
+                spans.push(Span { first, end: stop, special });
+                first = stop;
             }
-            batches.colours[colour] = first..batches.list.len();
+            colours[colour] = first_batch..spans.len();
         }
+        if spans.len() > list.capacity() {
+            // Doubling would leave up to half of the largest array unused.
+            list.reserve_exact((spans.len() + spans.len() / 8).max(32) - list.len());
+        }
+        list.resize_with(spans.len(), Batch::blank);
+        let rows = bodies.begin(colours.iter().cloned(), spans.len());
+        let size = lot_size::<L>(spans.len(), self.crew);
+        let (spans, keys, order) = (&*spans, &*keys, &*order);
+        self.crew.each((chunks(list, size), chunks(rows, size)), |lot, (batches, rows)| {
+            let spans = &spans[lot * size..];
+            L::enter(prepare::PrepareLot { batches, rows, spans, context: self.context, keys, order });
+        });
+        bodies.verify(self.crew, self.context.bodies.len());
     }
 }
+
+/// How many of `count` batches make a task: a few tasks for each thread, or one for all where that is too little to share.
+fn lot_size<L: Lanes>(count: usize, crew: &Crew) -> usize {
+    if count * L::LANES < LEAST_SHARED {
+        return count.max(1);
+    }
+    (count / (4 * crew.threads())).max(LEAST_TASK.div_ceil(L::LANES))
+}
+
+/// Manifolds that are solved by one thread rather than shared out: some two microseconds' worth.
+const LEAST_SHARED: usize = 96;
+/// Least manifolds of a task.
+const LEAST_TASK: usize = 32;
 
 fn is_special(sort: u16) -> bool {
     usize::from(sort) % KINDS >= 4

@@ -1,13 +1,12 @@
 //! From manifolds to rows.
 
-use super::extra::{self, Extra};
+use super::extra;
 use super::vector::{Motion, lanes, mul_lower_transpose, store3, tangent};
-use super::{Batch, Batches, Context, FrictionRows, ManifoldKey, NO_EXTRA, PointRow};
+use super::{Batch, Context, FrictionRows, ManifoldKey, PointRow, Span};
 use crate::solve::substep::manifold::{MANIFOLD_POINTS, STATIC};
 use crate::solve::substep::surface::SurfaceCoefficients;
-use core::ops::Range;
 use ferrode_math::Vector3;
-use ferrode_math::simd::{Lanes, NO_RECORD, Record};
+use ferrode_math::simd::{Lanes, NO_RECORD, Record, Work};
 
 static NOTHING: Record = Record::ZERO;
 static NO_SURFACE: SurfaceCoefficients = SurfaceCoefficients::NONE;
@@ -27,20 +26,39 @@ pub(super) struct Sides<L: Lanes> {
     pub rolling: Vector3<L>,
 }
 
-/// Adds the batch of the manifolds `order[range]`.
+/// Makes the rows of some batches.
+pub(super) struct PrepareLot<'a, L: Lanes> {
+    pub batches: &'a mut [Batch<L>],
+    /// Filled with the batches' bodies.
+    pub rows: &'a mut [[L::Index; 2]],
+    pub spans: &'a [Span],
+    pub context: &'a Context<'a>,
+    pub keys: &'a [ManifoldKey],
+    pub order: &'a [u32],
+}
+
+impl<L: Lanes> Work<L> for PrepareLot<'_, L> {
+    #[inline(always)]
+    fn run(self) {
+        for ((batch, bodies), span) in self.batches.iter_mut().zip(self.rows).zip(self.spans) {
+            prepare(batch, bodies, self.context, self.keys, self.order, span);
+        }
+    }
+}
+
 #[inline(always)]
-pub(super) fn push_batch<L: Lanes>(
-    batches: &mut Batches<L>,
+fn prepare<L: Lanes>(
+    batch: &mut Batch<L>,
+    bodies: &mut [L::Index; 2],
     context: &Context<'_>,
     keys: &[ManifoldKey],
     order: &[u32],
-    range: Range<usize>,
-    special: bool,
+    span: &Span,
 ) {
-    let manifolds = &order[range.clone()];
+    let special = span.special;
+    let manifolds = &order[span.first as usize..span.end as usize];
     let manifold = |lane: usize| manifolds.get(lane).map(|i| &context.manifolds[*i as usize]);
     let surface = |lane: usize| manifold(lane).map_or(&NO_SURFACE, |m| &context.surfaces[m.surface as usize]);
-    let mut bodies = [L::Index::default(); 2];
     for (side, index) in bodies.iter_mut().enumerate() {
         for (lane, i) in index.as_mut().iter_mut().enumerate() {
             *i = manifolds
@@ -74,7 +92,6 @@ pub(super) fn push_batch<L: Lanes>(
 
     // Rows along the normal.
     let most = manifolds.iter().map(|i| context.manifolds[*i as usize].count).max().unwrap_or(0);
-    let mut points = [PointRow::default(); MANIFOLD_POINTS];
     let mut arms = [[Vector3::ZERO; 2]; MANIFOLD_POINTS];
     let mut present = [L::ZERO; MANIFOLD_POINTS];
     let mut centre = [Vector3::ZERO; 2];
@@ -88,7 +105,7 @@ pub(super) fn push_batch<L: Lanes>(
         let inverse = inv_mass + a.length_squared() + b.length_squared();
         let mass = L::select(here & L::ZERO.lt(inverse), L::ONE / inverse, L::ZERO);
         let separation = r[3] + layer;
-        points[k] = PointRow {
+        batch.points[k] = PointRow {
             angular: [store3(a), store3(b)],
             mass: mass.store(),
             separation0: separation.store(),
@@ -100,7 +117,8 @@ pub(super) fn push_batch<L: Lanes>(
         (arms[k], present[k]) = (arm, one);
     }
     let share = L::select(L::ZERO.lt(count), L::ONE / count, L::ZERO);
-    centre = centre.map(|c| c * share);
+    // By name: closures within `map` don't inherit the instruction set.
+    centre = [centre[0] * share, centre[1] * share];
     let mut radius = L::ZERO;
     for (arm, one) in arms.iter().zip(present).take(usize::from(most)) {
         radius += (arm[0] - centre[0]).length() * one;
@@ -128,8 +146,9 @@ pub(super) fn push_batch<L: Lanes>(
     let inverse = L::select(L::ZERO.lt(determinant), L::ONE / determinant, L::ZERO);
     let twist = product(2, 2);
     let twist_mass = L::select(L::ZERO.lt(twist), L::ONE / twist, L::ZERO);
-    let friction = FrictionRows {
-        angular: rows.map(|row| row.map(store3)),
+    let both = |row: &[Vector3<L>; 2]| [store3(row[0]), store3(row[1])];
+    batch.friction = FrictionRows {
+        angular: [both(&rows[0]), both(&rows[1]), both(&rows[2])],
         mass: [(k22 * inverse).store(), (-k12 * inverse).store(), (k11 * inverse).store()],
         twist_mass: twist_mass.store(),
         impulse: [carried.dot(t1).store(), carried.dot(t2).store(), (head[3] * ratio).store()],
@@ -138,23 +157,16 @@ pub(super) fn push_batch<L: Lanes>(
     };
 
     let soft = context.soft;
-    let mut batch = Batch {
-        bodies,
-        normal: store3(normal),
-        tangent: store3(t1),
-        scale: [scales[0][0].store(), scales[1][0].store()],
-        bias_rate: L::splat(soft.bias_rate).store(),
-        mass_scale: L::splat(soft.mass_scale).store(),
-        impulse_scale: L::splat(soft.impulse_scale).store(),
-        push_out: lanes::<L>(|lane| surface(lane).push_out).store(),
-        points,
-        friction,
-        count: u32::from(most),
-        extra: NO_EXTRA,
-        range: (range.start as u32, range.end as u32),
-    };
+    batch.normal = store3(normal);
+    batch.tangent = store3(t1);
+    batch.scale = [scales[0][0].store(), scales[1][0].store()];
+    batch.bias_rate = L::splat(soft.bias_rate).store();
+    batch.mass_scale = L::splat(soft.mass_scale).store();
+    batch.impulse_scale = L::splat(soft.impulse_scale).store();
+    batch.push_out = lanes::<L>(|lane| surface(lane).push_out).store();
+    batch.count = u32::from(most);
+    batch.special = special;
     if special {
-        batch.extra = batches.extras.len() as u32;
         let sides = Sides {
             scales,
             normal,
@@ -175,13 +187,17 @@ pub(super) fn push_batch<L: Lanes>(
             Motion::from_record(L::transpose(record))
         };
         let motions = [motion(0), motion(1)];
-        let velocities = bodies.map(|index| {
+        let velocity = |side: usize| {
+            let index = &bodies[side];
             Motion::from_record(L::transpose(|lane| {
                 context.bodies.velocities.get(index.as_ref()[lane] as usize).unwrap_or(&NOTHING)
             }))
-        });
-        let made: Extra<L> = extra::prepare(&mut batch, &sides, &surface, motions, velocities);
-        batches.extras.push(made);
+        };
+        let velocities = [velocity(0), velocity(1)];
+        let made = extra::prepare(batch, &sides, &surface, motions, velocities);
+        match &mut batch.extra {
+            Some(extra) => **extra = made,
+            None => batch.extra = Some(Box::new(made)),
+        }
     }
-    batches.list.push(batch);
 }

@@ -4,13 +4,13 @@ use super::Batch;
 use super::extra::Extra;
 use super::sweep::Pair;
 use super::vector::load3;
-use core::cell::Cell;
-use ferrode_math::simd::{Lanes, Record};
+use ferrode_math::simd::Lanes;
+use ferrode_math::stage::Touch;
 
 /// Asks each point that pushed, and that had approached faster than its threshold, for the speed away v = −e v₀.
 #[inline(always)]
-pub(super) fn solve<L: Lanes>(batch: &mut Batch<L>, extra: &Extra<L>, velocities: &[Cell<Record>]) {
-    let mut pair = Pair::gather(batch, velocities);
+pub(super) fn solve<L: Lanes>(batch: &mut Batch<L>, extra: &Extra<L>, touch: &Touch<'_, L>) {
+    let mut pair = Pair::gather(batch, touch);
     let n = load3::<L>(&batch.normal);
     let bounce = L::load(&extra.bounce);
     let threshold = -L::load(&extra.bounce_velocity);
@@ -27,5 +27,5 @@ pub(super) fn solve<L: Lanes>(batch: &mut Batch<L>, extra: &Extra<L>, velocities
         pair.push(n * (new - old));
         pair.turn(&angular, new - old);
     }
-    pair.scatter(batch, velocities);
+    pair.scatter(touch);
 }

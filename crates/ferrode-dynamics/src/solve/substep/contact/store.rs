@@ -4,7 +4,14 @@ use super::vector::{load3, store3};
 use super::{Batches, Block3};
 use crate::solve::substep::manifold::ContactManifold;
 use core::any::Any;
+use ferrode_math::Vector3;
 use ferrode_math::simd::{Kernel, Lanes};
+
+/// Impulses along two tangents, as vectors of the world.
+#[inline(always)]
+fn along<L: Lanes>(tangents: [Vector3<L>; 2], impulses: [L::Block; 2]) -> Block3<L> {
+    store3(tangents[0] * L::load(&impulses[0]) + tangents[1] * L::load(&impulses[1]))
+}
 
 /// Writes the impulses of all batches into their manifolds.
 pub(super) struct Store<'a> {
@@ -19,15 +26,17 @@ impl Kernel for Store<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) {
         let Some(batches) = self.batches.downcast_ref::<Batches<L>>() else { return };
-        for batch in &batches.list {
+        for (batch, span) in batches.list.iter().zip(&batches.spans) {
             let (n, t1) = (load3::<L>(&batch.normal), load3::<L>(&batch.tangent));
             let t2 = n.cross(t1);
-            let along =
-                |impulses: [L::Block; 2]| store3(t1 * L::load(&impulses[0]) + t2 * L::load(&impulses[1]));
             let [f1, f2, twist] = batch.friction.impulse;
-            let friction: Block3<L> = along([f1, f2]);
-            let rolling = batches.extras.get(batch.extra as usize).map(|e| along(e.rolling_impulse));
-            let places = &self.order[batch.range.0 as usize..batch.range.1 as usize];
+            let friction = along::<L>([t1, t2], [f1, f2]);
+            let extra = batch.extra.as_ref().filter(|_| batch.special);
+            let mut rolling = None;
+            if let Some(extra) = extra {
+                rolling = Some(along::<L>([t1, t2], extra.rolling_impulse));
+            }
+            let places = &self.order[span.first as usize..span.end as usize];
             for (lane, place) in places.iter().enumerate() {
                 let manifold = &mut self.manifolds[*place as usize];
                 for (record, row) in manifold.points.iter_mut().zip(&batch.points[..batch.count as usize]) {

@@ -2,16 +2,17 @@
 
 use super::extra::Extra;
 use super::vector::{Motion, load3};
-use super::{Batch, Batches, Pass, restitution};
+use super::{Batch, Batches, Pass, lot_size, restitution};
 use crate::solve::substep::bodies::SolverBodies;
 use core::any::Any;
-use core::cell::Cell;
 use ferrode_math::Vector3;
-use ferrode_math::simd::{Kernel, Lanes, Record};
+use ferrode_math::simd::{Kernel, Lanes, Record, Work};
+use ferrode_math::stage::{Crew, Lot, Touch};
 
 /// One pass over all batches.
 pub(super) struct Sweep<'a> {
     pub batches: &'a mut (dyn Any + Send + Sync),
+    pub crew: &'a Crew,
     pub bodies: &'a mut SolverBodies,
     pub pass: Pass,
     /// Length of a substep.
@@ -23,8 +24,7 @@ pub(super) struct Sweep<'a> {
 /// What a pass reads beside the rows.
 #[derive(Clone, Copy)]
 struct Scene<'a, L> {
-    velocities: &'a [Cell<Record>],
-    deltas: &'a [Cell<Record>],
+    deltas: &'a [Record],
     inv_h: L,
     elapsed: L,
 }
@@ -32,27 +32,49 @@ struct Scene<'a, L> {
 impl Kernel for Sweep<'_> {
     type Out = ();
 
-    #[inline(always)]
     fn run<L: Lanes>(self) {
         let Some(batches) = self.batches.downcast_mut::<Batches<L>>() else { return };
-        let Batches { list, extras, .. } = batches;
-        let scene = Scene {
-            velocities: Cell::from_mut(self.bodies.velocities.as_mut_slice()).as_slice_of_cells(),
-            deltas: Cell::from_mut(self.bodies.deltas.as_mut_slice()).as_slice_of_cells(),
-            inv_h: L::splat(1.0 / self.h),
-            elapsed: L::splat(self.elapsed),
-        };
-        // Batches lie in the order of their colours.
-        for batch in list.iter_mut() {
-            let extra = extras.get_mut(batch.extra as usize);
-            match (self.pass, extra) {
-                (Pass::WarmStart, extra) => warm_start(batch, extra, &scene),
-                (Pass::Biased, None) => solve::<L, false, false>(batch, None, &scene),
-                (Pass::Biased, extra) => solve::<L, false, true>(batch, extra, &scene),
-                (Pass::Relax, None) => solve::<L, true, false>(batch, None, &scene),
-                (Pass::Relax, extra) => solve::<L, true, true>(batch, extra, &scene),
+        let SolverBodies { velocities, deltas, .. } = self.bodies;
+        let (pass, h, elapsed, deltas) = (self.pass, self.h, self.elapsed, deltas.as_slice());
+        for (colour, range) in batches.colours.iter().enumerate().filter(|(_, range)| !range.is_empty()) {
+            let list = &mut batches.list[range.clone()];
+            let size = lot_size::<L>(list.len(), self.crew);
+            batches.bodies.sweep(self.crew, colour, size, list, velocities, |lot| {
+                L::enter(SweepLot { lot, pass, deltas, h, elapsed });
+            });
+        }
+    }
+}
+
+/// A pass over some batches of a colour.
+struct SweepLot<'a, L: Lanes> {
+    lot: Lot<'a, L, Batch<L>>,
+    pass: Pass,
+    deltas: &'a [Record],
+    h: f32,
+    elapsed: f32,
+}
+
+impl<L: Lanes> Work<L> for SweepLot<'_, L> {
+    #[inline(always)]
+    fn run(mut self) {
+        let scene =
+            Scene { deltas: self.deltas, inv_h: L::splat(1.0 / self.h), elapsed: L::splat(self.elapsed) };
+        for i in 0..self.lot.len() {
+            let (batch, touch) = self.lot.get(i);
+            // Taken out meanwhile, so that both can be changed.
+            let mut kept = if batch.special { batch.extra.take() } else { None };
+            match (self.pass, kept.as_deref_mut()) {
+                (Pass::WarmStart, extra) => warm_start(batch, extra, &touch),
+                (Pass::Biased, None) => solve::<L, false, false>(batch, None, &touch, &scene),
+                (Pass::Biased, extra) => solve::<L, false, true>(batch, extra, &touch, &scene),
+                (Pass::Relax, None) => solve::<L, true, false>(batch, None, &touch, &scene),
+                (Pass::Relax, extra) => solve::<L, true, true>(batch, extra, &touch, &scene),
                 (Pass::Restitution, None) => {}
-                (Pass::Restitution, Some(extra)) => restitution::solve(batch, extra, scene.velocities),
+                (Pass::Restitution, Some(extra)) => restitution::solve(batch, extra, &touch),
+            }
+            if kept.is_some() {
+                batch.extra = kept;
             }
         }
     }
@@ -67,18 +89,18 @@ pub(super) struct Pair<L: Lanes> {
 
 impl<L: Lanes> Pair<L> {
     #[inline(always)]
-    pub fn gather(batch: &Batch<L>, velocities: &[Cell<Record>]) -> Self {
+    pub fn gather(batch: &Batch<L>, touch: &Touch<'_, L>) -> Self {
         Self {
-            a: Motion::from_record(L::gather(velocities, &batch.bodies[0])),
-            b: Motion::from_record(L::gather(velocities, &batch.bodies[1])),
+            a: Motion::from_record(touch.gather(0)),
+            b: Motion::from_record(touch.gather(1)),
             scale: [L::load(&batch.scale[0]), L::load(&batch.scale[1])],
         }
     }
 
     #[inline(always)]
-    pub fn scatter(self, batch: &Batch<L>, velocities: &[Cell<Record>]) {
-        L::scatter(velocities, &batch.bodies[0], self.a.to_record());
-        L::scatter(velocities, &batch.bodies[1], self.b.to_record());
+    pub fn scatter(self, touch: &Touch<'_, L>) {
+        touch.scatter(0, self.a.to_record());
+        touch.scatter(1, self.b.to_record());
     }
 
     /// Relative velocity of the centres.
@@ -119,13 +141,25 @@ fn load_row<L: Lanes>(row: &[super::Block3<L>; 2]) -> [Vector3<L>; 2] {
     [load3::<L>(&row[0]), load3::<L>(&row[1])]
 }
 
+// By name, not by `map`: that takes its array by value, and its closures don't inherit the instruction set unless they happen to be
+// inlined.
 #[inline(always)]
-fn warm_start<L: Lanes>(batch: &Batch<L>, extra: Option<&mut Extra<L>>, scene: &Scene<'_, L>) {
-    let mut pair = Pair::gather(batch, scene.velocities);
+fn load3a<L: Lanes>(b: &super::Block3<L>) -> [L; 3] {
+    [L::load(&b[0]), L::load(&b[1]), L::load(&b[2])]
+}
+
+#[inline(always)]
+fn load2a<L: Lanes>(b: &[L::Block; 2]) -> [L; 2] {
+    [L::load(&b[0]), L::load(&b[1])]
+}
+
+#[inline(always)]
+fn warm_start<L: Lanes>(batch: &Batch<L>, extra: Option<&mut Extra<L>>, touch: &Touch<'_, L>) {
+    let mut pair = Pair::gather(batch, touch);
     let (n, t1) = (load3::<L>(&batch.normal), load3::<L>(&batch.tangent));
     let t2 = n.cross(t1);
     let f = &batch.friction;
-    let impulse = f.impulse.map(|x| L::load(&x));
+    let impulse = load3a::<L>(&f.impulse);
     let mut sum = t1 * impulse[0] + t2 * impulse[1];
     for (row, impulse) in f.angular.iter().zip(impulse) {
         pair.turn(&load_row::<L>(row), impulse);
@@ -141,7 +175,7 @@ fn warm_start<L: Lanes>(batch: &Batch<L>, extra: Option<&mut Extra<L>>, scene: &
             pair.turn(&load_row::<L>(row), L::load(impulse));
         }
     }
-    pair.scatter(batch, scene.velocities);
+    pair.scatter(touch);
 }
 
 #[inline(always)]
@@ -154,9 +188,10 @@ fn clamp<L: Lanes>(x: L, bound: L) -> L {
 fn solve<L: Lanes, const RELAX: bool, const SPECIAL: bool>(
     batch: &mut Batch<L>,
     mut extra: Option<&mut Extra<L>>,
+    touch: &Touch<'_, L>,
     scene: &Scene<'_, L>,
 ) {
-    let mut pair = Pair::gather(batch, scene.velocities);
+    let mut pair = Pair::gather(batch, touch);
     let n = load3::<L>(&batch.normal);
     let count = batch.count as usize;
     let mut normal_impulse = L::ZERO;
@@ -175,8 +210,8 @@ fn solve<L: Lanes, const RELAX: bool, const SPECIAL: bool>(
     let (mut shift, mut deltas) = (L::ZERO, None);
     if RELAX {
         let moved = Pair {
-            a: Motion::from_record(L::gather(scene.deltas, &batch.bodies[0])),
-            b: Motion::from_record(L::gather(scene.deltas, &batch.bodies[1])),
+            a: Motion::from_record(touch.gather_from(scene.deltas, 0)),
+            b: Motion::from_record(touch.gather_from(scene.deltas, 1)),
             scale: pair.scale,
         };
         shift = n.dot(moved.relative());
@@ -243,7 +278,7 @@ fn solve<L: Lanes, const RELAX: bool, const SPECIAL: bool>(
         pair.turn(&angular, change);
     }
     pair.push(n * total);
-    pair.scatter(batch, scene.velocities);
+    pair.scatter(touch);
 }
 
 /// Coulomb friction, the same in all directions.
@@ -252,14 +287,14 @@ fn friction<L: Lanes>(batch: &mut Batch<L>, pair: &mut Pair<L>, n: Vector3<L>, n
     let t1 = load3::<L>(&batch.tangent);
     let t2 = n.cross(t1);
     let f = &mut batch.friction;
-    let rows = f.angular.map(|row| load_row::<L>(&row));
+    let rows = [load_row::<L>(&f.angular[0]), load_row::<L>(&f.angular[1]), load_row::<L>(&f.angular[2])];
     let bound = L::load(&f.mu) * normal_impulse;
 
     let relative = pair.relative();
     let v1 = t1.dot(relative) + pair.angular(&rows[0]);
     let v2 = t2.dot(relative) + pair.angular(&rows[1]);
-    let m = f.mass.map(|m| L::load(&m));
-    let old = f.impulse.map(|x| L::load(&x));
+    let m = load3a::<L>(&f.mass);
+    let old = load3a::<L>(&f.impulse);
     let new1 = old[0] - (m[0] * v1 + m[1] * v2);
     let new2 = old[1] - (m[1] * v1 + m[2] * v2);
     let square = new1 * new1 + new2 * new2;
@@ -289,16 +324,16 @@ fn special_friction<L: Lanes>(
     let t1 = load3::<L>(&batch.tangent);
     let t2 = n.cross(t1);
     let f = &mut batch.friction;
-    let rows = f.angular.map(|row| load_row::<L>(&row));
+    let rows = [load_row::<L>(&f.angular[0]), load_row::<L>(&f.angular[1]), load_row::<L>(&f.angular[2])];
     let bound = |i: usize| {
         let bound = &extra.bounds[i];
         L::load(&bound.coefficient) * normal_impulse + L::load(&bound.constant)
     };
     let (b1, b2) = (bound(0), bound(1));
-    let offset = extra.offset.map(|x| L::load(&x));
-    let slip = extra.slip.map(|x| L::load(&x));
-    let m = f.mass.map(|m| L::load(&m));
-    let old = f.impulse.map(|x| L::load(&x));
+    let offset = load3a::<L>(&extra.offset);
+    let slip = load2a::<L>(&extra.slip);
+    let m = load3a::<L>(&f.mass);
+    let old = load3a::<L>(&f.impulse);
 
     let relative = pair.relative();
     let v1 = t1.dot(relative) + pair.angular(&rows[0]) + offset[0] + slip[0] * old[0];
@@ -322,14 +357,14 @@ fn special_friction<L: Lanes>(
 /// Rolling friction.
 #[inline(always)]
 fn roll<L: Lanes>(extra: &mut Extra<L>, pair: &mut Pair<L>, normal_impulse: L) {
-    let rows = extra.rolling.map(|row| load_row::<L>(&row));
+    let rows = [load_row::<L>(&extra.rolling[0]), load_row::<L>(&extra.rolling[1])];
     let bound = |i: usize| {
         let bound = &extra.rolling_bounds[i];
         L::load(&bound.coefficient) * normal_impulse + L::load(&bound.constant)
     };
     let (b1, b2) = (bound(0), bound(1));
-    let old = extra.rolling_impulse.map(|x| L::load(&x));
-    let mass = extra.rolling_mass.map(|x| L::load(&x));
+    let old = load2a::<L>(&extra.rolling_impulse);
+    let mass = load2a::<L>(&extra.rolling_mass);
     let new1 = old[0] - mass[0] * pair.angular(&rows[0]);
     let new2 = old[1] - mass[1] * pair.angular(&rows[1]);
     let (new1, new2) = within_ellipse(new1, new2, b1, b2);
@@ -341,11 +376,10 @@ fn roll<L: Lanes>(extra: &mut Extra<L>, pair: &mut Pair<L>, normal_impulse: L) {
 /// The point (x, y), drawn towards the centre onto the ellipse with the given half axes if it lies beyond.
 #[inline(always)]
 fn within_ellipse<L: Lanes>(x: L, y: L, a: L, b: L) -> (L, L) {
-    let ratio = |x: L, a: L| {
-        let open = L::ZERO.lt(a);
-        (L::select(open, x / L::select(open, a, L::ONE), L::ZERO), L::select(open, x, L::ZERO))
-    };
-    let ((u, x), (v, y)) = (ratio(x, a), ratio(y, b));
+    let (a_open, b_open) = (L::ZERO.lt(a), L::ZERO.lt(b));
+    let u = L::select(a_open, x / L::select(a_open, a, L::ONE), L::ZERO);
+    let v = L::select(b_open, y / L::select(b_open, b, L::ONE), L::ZERO);
+    let (x, y) = (L::select(a_open, x, L::ZERO), L::select(b_open, y, L::ZERO));
     let square = u * u + v * v;
     let beyond = L::ONE.lt(square);
     let shrink = L::select(beyond, L::ONE / L::select(beyond, square, L::ONE).sqrt(), L::ONE);
