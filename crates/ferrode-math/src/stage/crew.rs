@@ -17,6 +17,8 @@ const BITS: u32 = 12;
 const SPINS: u32 = 300;
 /// Looks with giving way before it sleeps: a millisecond or so.
 const YIELDS: u32 = 2000;
+/// The same when told to rest: the next step may follow at once, and to wake takes longer than to wait so long.
+const RESTING_YIELDS: u32 = 200;
 
 /// The calling thread and its helpers; see the [module](super).
 ///
@@ -283,7 +285,7 @@ impl Shared {
             if round != seen {
                 (seen, looks) = (round, 0);
                 self.work(own, round);
-            } else if looks > SPINS + YIELDS || (looks > SPINS && self.resting.load(Ordering::Relaxed)) {
+            } else if looks > SPINS + self.yields() {
                 looks = 0;
                 if self.sleep(own, seen) {
                     return;
@@ -292,6 +294,11 @@ impl Shared {
                 pause(&mut looks);
             }
         }
+    }
+
+    /// How often a helper gives way before it sleeps.
+    fn yields(&self) -> u32 {
+        if self.resting.load(Ordering::Relaxed) { RESTING_YIELDS } else { YIELDS }
     }
 
     /// Sleeps until there is another round than the last one; whether the crew breaks up instead.

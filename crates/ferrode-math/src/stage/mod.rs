@@ -13,7 +13,7 @@
 //! of their own, and add up nothing across tasks. So neither the number of threads nor their speed shows in any bit.
 //!
 //! **Cost.** A stage of a step may take few microseconds. Helpers spin between stages, for some microseconds by themselves and a
-//! while longer giving way to others, then sleep until the next stage, or at once when told to [`rest`](Crew::rest). Each
+//! while longer giving way to others, then sleep until the next stage; sooner when told to [`rest`](Crew::rest). Each
 //! thread begins with its own part of the tasks, which is the same in every stage of as many tasks, so that data stay in the caches of
 //! one core; who is done early takes over what others have not begun. A helper that the system does not let run
 //! delays nobody: tasks that it has not begun are done without it.
