@@ -17,20 +17,26 @@
 //!
 //! **Order.** At first all rows without a friction index in their order, then all with one. At the start of the iterations 8, 16, 24, …
 //! the whole order is shuffled in place: for k = 1 … m-1, r = random(k + 1), entries k and r change places.
+//!
+//! Up to two dozen rows on few bodies, such as a box on the ground, are visited in the same order on their matrix ([`small`]).
 
+mod small;
 mod sweep;
 
 use crate::error::{LcpError, check_len};
-use crate::kernel::sum4;
-use ferrode_math::simd::{Compute, compute_wide};
+use core::marker::PhantomData;
+use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 use std::borrow::Borrow;
-use sweep::{Interleaving, PackedRow, Stretch, Sweep, find_stretches, interleave};
+use sweep::{Interleaving, InverseMass, PackedRow, Six, Stretch, Sweep, find_stretches, interleave};
 
 /// Stands for "no body".
 pub const NO_BODY: u32 = u32::MAX;
 
 /// How many iterations lie between two shuffles of the rows.
 const SHUFFLE_PERIOD: u32 = 8;
+
+/// The bodies that stand for no body: several, by turns, so that rows that have none of their own don't wait for each other.
+const STAND_INS: usize = 8;
 
 /// What the solver needs to know of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,16 +77,6 @@ impl Default for SorRow {
             findex: -1,
             body: [NO_BODY; 2],
         }
-    }
-}
-
-impl SorRow {
-    /// The same row with its two bodies in the other order.
-    #[cold]
-    fn swapped(&self) -> Self {
-        let mut j = self.j;
-        j.rotate_left(6);
-        Self { j, body: [self.body[1], self.body[0]], ..*self }
     }
 }
 
@@ -172,6 +168,8 @@ pub struct SorReport {
 /// allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct SorWorkspace {
+    /// The bodies' inverse masses, and that of no body.
+    mass: Vec<InverseMass>,
     packed: Vec<PackedRow>,
     order: Vec<u32>,
     /// The order before the first shuffle, as stretches of rows on the same bodies.
@@ -181,8 +179,9 @@ pub struct SorWorkspace {
     friction: Vec<u32>,
     /// The forces, and the one that is always 1.
     lambda: Vec<f64>,
-    /// The accelerations, and one of a body that stands for no body.
+    /// The accelerations, and those of [`STAND_INS`] bodies that stand for no body.
     acceleration: Vec<SorAcceleration>,
+    small: small::Small,
     /// Largest component of `B` per row and body; sums of upward and downward changes per body.
     weight: Vec<[f64; 2]>,
     change: Vec<[f64; 2]>,
@@ -204,7 +203,7 @@ impl SorWorkspace {
     /// The accelerations of the last solve, one per body.
     #[must_use]
     pub fn acceleration(&self) -> &[SorAcceleration] {
-        &self.acceleration[..self.acceleration.len().saturating_sub(1)]
+        &self.acceleration[..self.acceleration.len().saturating_sub(STAND_INS)]
     }
 }
 
@@ -239,23 +238,68 @@ pub fn solve_sor_rows(
     workspace: &mut SorWorkspace,
 ) -> Result<SorReport, LcpError> {
     check_params(params)?;
-    if let Err(error) = workspace.load(bodies, count, rows, params) {
+    if let Err(error) = dispatch_quads(Load { workspace, bodies, count, rows, params }) {
         workspace.lambda.clear();
         workspace.acceleration.clear();
         return Err(error);
     }
     let (iterations, exit) = match (params.dynamic, params.inf_times_zero) {
-        (None, InfTimesZero::Unbounded) => compute_wide(Run::<_, false, false> { workspace, params, random }),
-        (None, InfTimesZero::Zero) => compute_wide(Run::<_, true, false> { workspace, params, random }),
-        (Some(_), InfTimesZero::Unbounded) => {
-            compute_wide(Run::<_, false, true> { workspace, params, random })
+        (None, InfTimesZero::Unbounded) => {
+            dispatch_quads(Run::<_, false, false> { workspace, params, random })
         }
-        (Some(_), InfTimesZero::Zero) => compute_wide(Run::<_, true, true> { workspace, params, random }),
+        (None, InfTimesZero::Zero) => dispatch_quads(Run::<_, true, false> { workspace, params, random }),
+        (Some(_), InfTimesZero::Unbounded) => {
+            dispatch_quads(Run::<_, false, true> { workspace, params, random })
+        }
+        (Some(_), InfTimesZero::Zero) => dispatch_quads(Run::<_, true, true> { workspace, params, random }),
     };
-    // 0 times a number is 0 unless the number is infinite or none.
-    let forces: f64 = workspace.lambda.iter().map(|v| 0.0 * v).sum();
-    let accelerations: f64 = workspace.acceleration.iter().flat_map(|a| a.0).map(|v| 0.0 * v).sum();
-    Ok(SorReport { iterations, exit, finite: !(forces + accelerations).is_nan() })
+    let (blocks, rest) = workspace.lambda.as_chunks();
+    let finite = all_finite(blocks.iter())
+        && rest.iter().all(|v| v.is_finite())
+        && all_finite(workspace.acceleration.iter().map(|a| &a.0));
+    Ok(SorReport { iterations, exit, finite })
+}
+
+/// Whether all numbers are finite: 0 times a number is 0 unless the number is infinite or none.
+fn all_finite<'a>(blocks: impl Iterator<Item = &'a [f64; 8]>) -> bool {
+    let mut s = [0.0; 8];
+    for block in blocks {
+        for l in 0..8 {
+            s[l] += 0.0 * block[l];
+        }
+    }
+    s.iter().all(|v| *v == 0.0)
+}
+
+/// Taking the rows in, compiled for the machine.
+struct Load<'a, R> {
+    workspace: &'a mut SorWorkspace,
+    bodies: &'a [SorBody],
+    count: usize,
+    rows: R,
+    params: &'a SorParams,
+}
+
+impl<R: Iterator<Item: Borrow<SorRow>>> QuadKernel for Load<'_, R> {
+    type Out = Result<(), LcpError>;
+
+    #[inline(always)]
+    fn run<Q: Quad>(self) -> Result<(), LcpError> {
+        self.workspace.load::<Q>(self.bodies, self.count, self.rows, self.params)
+    }
+}
+
+/// Whether the few rows that there are can be solved by their matrix.
+fn is_small(rows: usize, bodies: usize, params: &SorParams) -> bool {
+    params.dynamic.is_none() && small::suits(rows, bodies)
+}
+
+/// Shuffles the order of the rows.
+fn shuffle(order: &mut [u32], random: &mut impl FnMut(u32) -> u32) {
+    for k in 1..order.len() {
+        let r = random(k as u32 + 1) as usize;
+        order.swap(k, r.min(k));
+    }
 }
 
 /// The iterations, compiled for the machine. `ZERO`: infinity times zero is zero; `DYNAMIC`: watch the changes.
@@ -265,12 +309,12 @@ struct Run<'a, R, const ZERO: bool, const DYNAMIC: bool> {
     random: &'a mut R,
 }
 
-impl<R: FnMut(u32) -> u32, const ZERO: bool, const DYNAMIC: bool> Compute for Run<'_, R, ZERO, DYNAMIC> {
+impl<R: FnMut(u32) -> u32, const ZERO: bool, const DYNAMIC: bool> QuadKernel for Run<'_, R, ZERO, DYNAMIC> {
     type Out = (u32, SorExit);
 
     #[inline(always)]
-    fn run(self) -> (u32, SorExit) {
-        self.workspace.run::<ZERO, DYNAMIC>(self.params, self.random)
+    fn run<Q: Quad>(self) -> (u32, SorExit) {
+        self.workspace.run::<Q, ZERO, DYNAMIC>(self.params, self.random)
     }
 }
 
@@ -307,49 +351,25 @@ fn check_row(row: usize, r: &SorRow, rows: usize, bodies: usize) -> Result<(), L
     Ok(())
 }
 
-/// `B = M^-1 J^T` of one body.
-#[inline(always)]
-fn apply_inverse_mass(body: &SorBody, j: &[f64]) -> [f64; 6] {
-    let (m, i) = (body.inv_mass, &body.inv_inertia);
-    [
-        m * j[0],
-        m * j[1],
-        m * j[2],
-        i[0] * j[3] + i[1] * j[4] + i[2] * j[5],
-        i[3] * j[3] + i[4] * j[4] + i[5] * j[5],
-        i[6] * j[3] + i[7] * j[4] + i[8] * j[5],
-    ]
-}
-
-/// The part of a row on one body: its Jacobian, and `B`. Zero for no body.
-#[inline(always)]
-fn part(bodies: &[SorBody], body: u32, j: &[f64]) -> ([f64; 6], [f64; 6]) {
-    match bodies.get(body as usize) {
-        Some(body) => ([j[0], j[1], j[2], j[3], j[4], j[5]], apply_inverse_mass(body, j)),
-        None => ([0.0; 6], [0.0; 6]),
-    }
-}
-
-/// The largest component by size.
-fn largest(b: &[f64; 6]) -> f64 {
-    b.iter().fold(0.0, |m: f64, v| if v.abs() > m { v.abs() } else { m })
-}
-
 impl SorWorkspace {
     /// Packs the rows and sets forces and accelerations to zero.
-    fn load(
+    #[inline(always)]
+    fn load<Q: Quad>(
         &mut self,
         bodies: &[SorBody],
         m: usize,
         rows: impl Iterator<Item: Borrow<SorRow>>,
         params: &SorParams,
     ) -> Result<(), LcpError> {
-        let nobody = bodies.len() as u32;
+        let nobody = bodies.len();
         self.lambda.clear();
         self.lambda.resize(m, 0.0);
         self.lambda.push(1.0);
         self.acceleration.clear();
-        self.acceleration.resize(bodies.len() + 1, SorAcceleration::default());
+        self.acceleration.resize(nobody + STAND_INS, SorAcceleration::default());
+        self.mass.clear();
+        self.mass.extend(bodies.iter().map(InverseMass::new));
+        self.mass.push(InverseMass::default());
         // Rows of an earlier solve may stand behind the m of this one; every row is written whole.
         if self.packed.len() < m {
             self.packed.resize(m, PackedRow::default());
@@ -360,37 +380,23 @@ impl SorWorkspace {
         self.change.clear();
         if params.dynamic.is_some() {
             self.weight.reserve(m);
-            self.change.resize(bodies.len() + 1, [0.0; 2]);
+            self.change.resize(nobody + STAND_INS, [0.0; 2]);
         }
         let mut count = 0;
-        for (row, (r, packed)) in rows.zip(&mut self.packed[..m]).enumerate() {
+        let mut rows = rows;
+        for (row, packed) in self.packed[..m].iter_mut().enumerate() {
+            let Some(r) = rows.next() else { break };
             let r = r.borrow();
             count += 1;
-            check_row(row, r, m, bodies.len())?;
-            // The loop reads the first body always and the second if there is one.
-            let swapped;
-            let r = if r.body[0] == NO_BODY {
-                swapped = r.swapped();
-                &swapped
-            } else {
-                r
-            };
-            (packed.j0, packed.b0) = part(bodies, r.body[0], &r.j[..6]);
-            (packed.j1, packed.b1) = part(bodies, r.body[1], &r.j[6..]);
-            let PackedRow { j0, b0, j1, b1, .. } = packed;
-            let mut s = [0.0; 4];
-            for l in 0..6 {
-                s[l % 2] += j0[l] * b0[l];
-                s[2 + l % 2] += j1[l] * b1[l];
-            }
-            let diagonal = sum4(s) + r.cfm;
+            check_row(row, r, m, nobody)?;
+            let j = r.j.as_chunks().0;
+            let (j0, j1) = (Six::<Q>::load(&j[0]), Six::<Q>::load(&j[1]));
+            let [first, second] = r.body.map(|body| (body as usize).min(nobody));
+            let (b0, b1) = (self.mass[first].times(&j[0], j0), self.mass[second].times(&j[1], j1));
+            let diagonal = Six::dot([j0, j1], [b0, b1], r.cfm);
             // An empty row without CFM has no effect on anything; its force stays 0.
             let d =
                 if diagonal == 0.0 || diagonal.is_nan() { 0.0 } else { params.over_relaxation / diagonal };
-            for l in 0..6 {
-                j0[l] *= -d;
-                j1[l] *= -d;
-            }
             let (lo, hi, scale) = if r.findex >= 0 {
                 self.friction.push(row as u32);
                 (-r.hi.abs(), r.hi.abs(), r.findex as u32)
@@ -398,25 +404,30 @@ impl SorWorkspace {
                 self.order.push(row as u32);
                 (r.lo, r.hi, m as u32)
             };
+            packed.set_vectors([j0.scaled(-d), b0, j1.scaled(-d), b1]);
             packed.rhs = r.rhs * d;
             packed.cfm = r.cfm * d;
             (packed.lo, packed.hi, packed.scale) = (lo, hi, scale);
-            packed.body = [r.body[0].min(nobody), r.body[1]];
+            let stand_in = nobody + row % STAND_INS;
+            packed.body = [first, second].map(|body| if body == nobody { stand_in } else { body } as u32);
             if params.dynamic.is_some() {
-                self.weight.push([largest(&packed.b0), largest(&packed.b1)]);
+                self.weight.push([b0.largest(), b1.largest()]);
             }
         }
         check_len("rows", count, m)?;
         self.order.extend_from_slice(&self.friction);
-        find_stretches(&self.order, &self.packed, &mut self.stretches);
+        if is_small(m, nobody, params) {
+            return Ok(());
+        }
+        find_stretches::<Q>(&self.order, &self.packed, nobody, &mut self.stretches);
         let Self { order, packed, stretches, interleaving, .. } = self;
-        interleave(order, &packed[..m], bodies.len(), stretches, interleaving);
+        interleave(order, &packed[..m], nobody, stretches, interleaving);
         Ok(())
     }
 
     /// Does the iterations. `ZERO`: infinity times zero is zero; `DYNAMIC`: watch the changes.
     #[inline(always)]
-    fn run<const ZERO: bool, const DYNAMIC: bool>(
+    fn run<Q: Quad, const ZERO: bool, const DYNAMIC: bool>(
         &mut self,
         params: &SorParams,
         random: &mut impl FnMut(u32) -> u32,
@@ -425,14 +436,20 @@ impl SorWorkspace {
         if planned == 0 {
             return (0, SorExit::Completed);
         }
+        let (rows, bodies) = (self.order.len(), self.acceleration.len() - STAND_INS);
+        if !DYNAMIC && is_small(rows, bodies, params) {
+            let Self { small, packed, order, lambda, acceleration, .. } = self;
+            small.run::<Q>(&packed[..rows], order, lambda, &mut acceleration[..bodies], params, random);
+            return (planned, SorExit::Completed);
+        }
         let mut done = 0;
         let mut extra = 0;
         let mut limit = params.dynamic.map_or(0.0, |d| d.premature_exit_delta);
         loop {
             if done >= SHUFFLE_PERIOD && done % SHUFFLE_PERIOD == 0 {
-                self.shuffle(random);
+                shuffle(&mut self.order, random);
             }
-            self.sweep::<ZERO, DYNAMIC>(done >= SHUFFLE_PERIOD);
+            self.sweep::<Q, ZERO, DYNAMIC>(done >= SHUFFLE_PERIOD);
             done += 1;
             let added = params.dynamic.map_or(0, |d| d.extra_iterations);
             if done == planned.saturating_add(extra) {
@@ -453,19 +470,20 @@ impl SorWorkspace {
         }
     }
 
-    /// Shuffles the order of the rows.
-    fn shuffle(&mut self, random: &mut impl FnMut(u32) -> u32) {
-        for k in 1..self.order.len() {
-            let r = random(k as u32 + 1) as usize;
-            self.order.swap(k, r.min(k));
-        }
-    }
-
     /// Visits every row once: in stretches of rows on the same bodies until the first shuffle, one by one after.
     #[inline(always)]
-    fn sweep<const ZERO: bool, const DYNAMIC: bool>(&mut self, shuffled: bool) {
+    fn sweep<Q: Quad, const ZERO: bool, const DYNAMIC: bool>(&mut self, shuffled: bool) {
         let Self { packed, order, stretches, lambda, acceleration, weight, change, .. } = self;
-        let mut sweep = Sweep::<ZERO, DYNAMIC> { packed, lambda, acceleration, weight, change };
+        let nobody = acceleration.len() - STAND_INS;
+        let mut sweep = Sweep::<Q, ZERO, DYNAMIC> {
+            packed,
+            lambda,
+            acceleration,
+            weight,
+            change,
+            nobody,
+            quads: PhantomData,
+        };
         if shuffled {
             for &row in order.iter() {
                 sweep.visit(row as usize);

@@ -41,21 +41,21 @@ fn pivoting() {
     assert_eq!((hash(&x), hash(&w)), (9_772_687_721_748_319_885, 12_511_698_366_579_951_667));
 }
 
-#[test]
-fn relaxation() {
+/// The hashes of forces and accelerations of 20 iterations over random rows on some bodies.
+fn relax(bodies: u32, rows: i32) -> (u64, u64) {
     let mut numbers = Numbers(2025);
-    let bodies: Vec<SorBody> = (0..12)
+    let all: Vec<SorBody> = (0..bodies)
         .map(|_| {
             let mut d = || 1.0 + 0.5 * numbers.next();
             SorBody { inv_mass: d(), inv_inertia: [d(), 0.1, 0.0, 0.1, d(), 0.2, 0.0, 0.2, d()] }
         })
         .collect();
-    let rows: Vec<SorRow> = (0..90)
+    let rows: Vec<SorRow> = (0..rows)
         .map(|i| {
             let mut j = [0.0; 12];
             j.fill_with(|| numbers.next());
-            let first = (i / 6 % 12) as u32;
-            let second = if i % 30 < 6 { NO_BODY } else { (first + 5) % 12 };
+            let first = i as u32 / 6 % bodies;
+            let second = if i % 30 < 6 { NO_BODY } else { (first + 5) % bodies };
             let (hi, findex) = if i % 3 == 0 { (f64::INFINITY, -1) } else { (0.5, i - i % 3) };
             SorRow { j, rhs: numbers.next(), cfm: 0.01, lo: 0.0, hi, findex, body: [first, second] }
         })
@@ -66,10 +66,18 @@ fn relaxation() {
         ((u64::from(state) * u64::from(n)) >> 32) as u32
     };
     let mut ws = SorWorkspace::new();
-    solve_sor(&bodies, &rows, &SorParams::default(), &mut random, &mut ws).unwrap();
+    let report = solve_sor(&all, &rows, &SorParams::default(), &mut random, &mut ws).unwrap();
+    assert!(report.finite);
     let accelerations: Vec<f64> = ws.acceleration().iter().flat_map(|a| a.0).collect();
-    assert_eq!(
-        (hash(ws.lambda()), hash(&accelerations)),
-        (11_878_605_733_029_775_656, 6_490_194_956_201_263_014)
-    );
+    (hash(ws.lambda()), hash(&accelerations))
+}
+
+#[test]
+fn relaxation() {
+    assert_eq!(relax(12, 90), (8_114_197_809_357_930_618, 4_491_954_727_278_343_792));
+}
+
+#[test]
+fn relaxation_of_a_few_rows() {
+    assert_eq!(relax(2, 22), (9_115_862_276_589_748_461, 1_559_078_663_569_451_980));
 }

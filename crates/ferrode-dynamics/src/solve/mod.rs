@@ -34,6 +34,7 @@ pub(crate) fn free_motions(bodies: &[SolverBody], fps: f64, out: &mut Vec<FreeMo
 }
 
 /// c/h − J (V/h + M⁻¹ f) of a row.
+#[inline(always)]
 pub(crate) fn right_hand_side(row: &Row, span: &JointSpan, fps: f64, free: &[FreeMotion]) -> f64 {
     let mut rhs = row.c * fps;
     if let Some(f) = free.get(span.bodies[0] as usize) {

@@ -1,8 +1,8 @@
 //! `Quick`: projected successive over-relaxation, in ODE's row order and with ODE's shuffles.
 
 use super::{FreeMotion, Solved, free_motions, right_hand_side};
-use crate::rows::NO_FRICTION_INDEX;
-use crate::step::Island;
+use crate::rows::{NO_FRICTION_INDEX, Row};
+use crate::step::{Island, JointSpan};
 use crate::world::QuickSettings;
 use ferrode_lcp::sor::{
     InfTimesZero, NO_BODY, SorBody, SorExit, SorParams, SorRow, SorWorkspace, solve_sor_rows,
@@ -44,25 +44,7 @@ pub(crate) fn solve(
         island.bodies.iter().map(|b| SorBody { inv_mass: b.inv_mass, inv_inertia: flatten(&b.inv_inertia) }),
     );
     let Island { rows, spans, lambda, .. } = island;
-    let free = &work.free;
-    let rows = spans.iter().flat_map(|span| {
-        rows[span.first..span.first + span.count.rows].iter().map(move |row| {
-            let (a, b, c, d) = (row.linear1, row.angular1, row.linear2, row.angular2);
-            let findex = match row.friction_index {
-                NO_FRICTION_INDEX => -1,
-                local => span.first as i32 + local,
-            };
-            SorRow {
-                j: [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z],
-                rhs: right_hand_side(row, span, fps, free),
-                cfm: row.cfm * fps,
-                lo: row.lo,
-                hi: row.hi,
-                findex,
-                body: span.bodies,
-            }
-        })
-    });
+    let rows = SorRows { spans: spans.iter(), rows: rows.iter(), span: None, left: 0, free: &work.free, fps };
     const { assert!(NO_BODY == crate::arena::NIL) };
     let params = SorParams {
         iterations: settings.iterations,
@@ -84,6 +66,45 @@ pub(crate) fn solve(
         }
         // No forces at all rather than forces that are no numbers.
         _ => Solved::Partly,
+    }
+}
+
+/// An island's rows as the solver takes them, made one by one.
+struct SorRows<'a> {
+    spans: core::slice::Iter<'a, JointSpan>,
+    rows: core::slice::Iter<'a, Row>,
+    span: Option<&'a JointSpan>,
+    /// How many rows of the span are left.
+    left: usize,
+    free: &'a [FreeMotion],
+    fps: f64,
+}
+
+impl Iterator for SorRows<'_> {
+    type Item = SorRow;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<SorRow> {
+        while self.left == 0 {
+            self.span = self.spans.next();
+            self.left = self.span?.count.rows;
+        }
+        self.left -= 1;
+        let (row, span) = (self.rows.next()?, self.span?);
+        let (a, b, c, d) = (row.linear1, row.angular1, row.linear2, row.angular2);
+        let findex = match row.friction_index {
+            NO_FRICTION_INDEX => -1,
+            local => span.first as i32 + local,
+        };
+        Some(SorRow {
+            j: [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, d.x, d.y, d.z],
+            rhs: right_hand_side(row, span, self.fps, self.free),
+            cfm: row.cfm * self.fps,
+            lo: row.lo,
+            hi: row.hi,
+            findex,
+            body: span.bodies,
+        })
     }
 }
 

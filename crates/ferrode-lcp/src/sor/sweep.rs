@@ -1,35 +1,154 @@
 //! The inner loop of [`super`]: one visit of a row, and of several rows on the same bodies.
 //!
 //! **Layout.** `J_i` is scaled by `-d_i` beforehand and stored with `B_i`, the bounds and the bodies' numbers in one record of four
-//! cache lines, in the order of access; a row that acts on one body reads three of them. The two bounds are multiplied by
-//! `|lambda_f|` without asking: rows without a friction index point to a force that is always 1. Sums have a fixed order of two
-//! partial sums.
+//! cache lines. The six numbers that a row or a body has are four and two, so that each operation on them is one of four lanes and one of
+//! two. Nothing is asked that the order of the rows makes hard to foretell: a row without a second body reads and writes one that stands for
+//! none; bounds are multiplied by `|lambda_f|` always, and rows without a friction index point to a force that is always 1. Sums have
+//! a fixed order.
 //!
 //! **Latency.** From a body's acceleration to its next one is a chain of dependent operations, and before the first shuffle
-//! the rows of a joint or of a pair of touching bodies follow each other. All that can be is kept off that chain: the change is
+//! the rows of a joint or of a pair of touching bodies follow each other. All that can be is kept off that chain: there the change is
 //! clamped, not the force; and in a stretch of rows on the same bodies all products `J_i a` are formed at once, with the `a` from before the
 //! stretch, and corrected for the changes inside it by the couplings `J_k B_l`, which are known beforehand. The
 //! result is that of visiting the rows one by one, to rounding.
 
-use super::{NO_BODY, SorAcceleration};
+use super::{SorAcceleration, SorBody};
+use core::marker::PhantomData;
+use ferrode_math::simd::{Pair, Quad};
+
+/// Six numbers, as four and two that are computed with at once.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Six<Q: Quad> {
+    head: Q,
+    tail: Q::Pair,
+}
+
+impl<Q: Quad> Six<Q> {
+    /// The first six of some numbers; zeros if there are not so many.
+    #[inline(always)]
+    pub fn load(a: &[f64]) -> Self {
+        let head = a.first_chunk().unwrap_or(&[0.0; 4]);
+        let tail = a.get(4..).and_then(<[f64]>::first_chunk).unwrap_or(&[0.0; 2]);
+        Self { head: Q::load(head), tail: Q::Pair::load(tail) }
+    }
+
+    /// Writes them to the first six places, if there are so many.
+    #[inline(always)]
+    pub fn store(self, to: &mut [f64]) {
+        if let Some((head, rest)) = to.split_first_chunk_mut()
+            && let Some(tail) = rest.first_chunk_mut()
+        {
+            self.head.store(head);
+            self.tail.store(tail);
+        }
+    }
+
+    #[inline(always)]
+    pub fn scaled(self, s: f64) -> Self {
+        Self { head: self.head * Q::splat(s), tail: self.tail * Q::Pair::splat(s) }
+    }
+
+    #[inline(always)]
+    pub fn plus(self, b: Self) -> Self {
+        Self { head: self.head + b.head, tail: self.tail + b.tail }
+    }
+
+    /// The dot product of two pairs of six, plus `more`.
+    #[inline(always)]
+    pub fn dot(j: [Self; 2], a: [Self; 2], more: f64) -> f64 {
+        let head = j[0].head * a[0].head + j[1].head * a[1].head;
+        let tail = j[0].tail * a[0].tail + j[1].tail * a[1].tail;
+        (head.fold() + tail.add_first(more)).sum()
+    }
+
+    /// The largest component by size.
+    #[inline(always)]
+    pub fn largest(self) -> f64 {
+        let mut numbers = [0.0; 6];
+        self.store(&mut numbers);
+        numbers.iter().fold(0.0, |m: f64, v| if v.abs() > m { v.abs() } else { m })
+    }
+}
+
+/// The inverse of a body's mass matrix, by columns: the first multiplies four numbers of a row, the other two one each.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct InverseMass {
+    head: [[f64; 4]; 3],
+    tail: [[f64; 2]; 3],
+}
+
+impl InverseMass {
+    #[inline(always)]
+    pub fn new(body: &SorBody) -> Self {
+        let (m, i) = (body.inv_mass, &body.inv_inertia);
+        Self {
+            head: [[m, m, m, i[0]], [0.0, 0.0, 0.0, i[1]], [0.0, 0.0, 0.0, i[2]]],
+            tail: [[i[3], i[6]], [i[4], i[7]], [i[5], i[8]]],
+        }
+    }
+
+    /// `B = M^-1 J^T`; `j` is given in both forms.
+    #[inline(always)]
+    pub fn times<Q: Quad>(&self, j: &[f64; 6], six: Six<Q>) -> Six<Q> {
+        let head = [Q::load(&self.head[0]), Q::load(&self.head[1]), Q::load(&self.head[2])];
+        let tail = [Q::Pair::load(&self.tail[0]), Q::Pair::load(&self.tail[1]), Q::Pair::load(&self.tail[2])];
+        let (x, y, z) = (j[3], j[4], j[5]);
+        Six {
+            head: head[0] * six.head + head[1] * Q::splat(y) + head[2] * Q::splat(z),
+            tail: tail[0] * Q::Pair::splat(x) + tail[1] * Q::Pair::splat(y) + tail[2] * Q::Pair::splat(z),
+        }
+    }
+}
 
 /// A row as the loop reads it.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C, align(64))]
 pub(super) struct PackedRow {
+    /// `-d J` and `B` of the first body, and of the second.
+    head: [[f64; 4]; 4],
+    tail: [[f64; 2]; 4],
     pub rhs: f64,
     pub cfm: f64,
     pub lo: f64,
     pub hi: f64,
+    /// The bodies; those past the last stand for none.
     pub body: [u32; 2],
     /// The force that scales the bounds; for rows without a friction index the one that is always 1.
     pub scale: u32,
-    /// `-d J` and `B` of the first body.
-    pub j0: [f64; 6],
-    pub b0: [f64; 6],
-    /// Of the second body.
-    pub j1: [f64; 6],
-    pub b1: [f64; 6],
+}
+
+impl PackedRow {
+    #[inline(always)]
+    pub fn set_vectors<Q: Quad>(&mut self, vectors: [Six<Q>; 4]) {
+        for (n, v) in vectors.into_iter().enumerate() {
+            v.head.store(&mut self.head[n]);
+            v.tail.store(&mut self.tail[n]);
+        }
+    }
+
+    #[inline(always)]
+    pub fn vector<Q: Quad>(&self, n: usize) -> Six<Q> {
+        Six { head: Q::load(&self.head[n]), tail: Q::Pair::load(&self.tail[n]) }
+    }
+
+    /// One of its four vectors, number by number.
+    #[inline(always)]
+    pub fn numbers(&self, n: usize) -> [f64; 6] {
+        let ([a, b, c, d], [e, f]) = (self.head[n], self.tail[n]);
+        [a, b, c, d, e, f]
+    }
+
+    /// `-d J a + more`.
+    #[inline(always)]
+    fn dot<Q: Quad>(&self, a: [Six<Q>; 2], more: f64) -> f64 {
+        Six::dot([self.vector(0), self.vector(2)], a, more)
+    }
+
+    /// Its bodies, the same number for no body whatever stands for it.
+    #[inline(always)]
+    fn bodies(&self, nobody: usize) -> [u32; 2] {
+        self.body.map(|body| body.min(nobody as u32))
+    }
 }
 
 /// The longest stretch of rows that is visited as one: more rows need more registers than there are.
@@ -47,11 +166,18 @@ pub(super) struct Stretch {
 }
 
 /// Cuts an order into stretches.
-pub(super) fn find_stretches(order: &[u32], packed: &[PackedRow], stretches: &mut Vec<Stretch>) {
+#[inline(always)]
+pub(super) fn find_stretches<Q: Quad>(
+    order: &[u32],
+    packed: &[PackedRow],
+    nobody: usize,
+    stretches: &mut Vec<Stretch>,
+) {
     stretches.clear();
     let mut at = 0;
     while let Some(first) = order.get(at).map(|&row| &packed[row as usize]) {
-        let same = |row: &&u32| packed[**row as usize].body == first.body;
+        let bodies = first.bodies(nobody);
+        let same = |row: &&u32| packed[**row as usize].bodies(nobody) == bodies;
         let len = order[at..].iter().take(LONGEST).take_while(same).count();
         let mut coupling = [0.0; 3];
         let mut c = 0;
@@ -59,8 +185,7 @@ pub(super) fn find_stretches(order: &[u32], packed: &[PackedRow], stretches: &mu
             let row = &packed[order[at + k] as usize];
             for l in 0..k {
                 let other = &packed[order[at + l] as usize];
-                let (s, t) = (dot6(&row.j0, &other.b0), dot6(&row.j1, &other.b1));
-                coupling[c] = (s[0] + t[0]) + (s[1] + t[1]);
+                coupling[c] = row.dot::<Q>([other.vector(1), other.vector(3)], 0.0);
                 c += 1;
             }
         }
@@ -83,34 +208,34 @@ pub(super) struct Interleaving {
 /// Puts stretches that don't wait for each other side by side: those that share a body keep their order, so that the sweep computes the same bits,
 /// and the processor works on several at a time. Friction rows come after their normal rows on the same bodies; if one hangs on
 /// other bodies' rows, all stay as they are.
+#[inline(always)]
 pub(super) fn interleave(
     order: &[u32],
     packed: &[PackedRow],
-    bodies: usize,
+    nobody: usize,
     stretches: &mut [Stretch],
     work: &mut Interleaving,
 ) {
     let Interleaving { of_body, level, start, before } = work;
-    let elsewhere = |row: &PackedRow| packed.get(row.scale as usize).is_some_and(|f| f.body != row.body);
+    let elsewhere = |row: &PackedRow| {
+        packed.get(row.scale as usize).is_some_and(|f| f.bodies(nobody) != row.bodies(nobody))
+    };
     if packed.iter().any(elsewhere) {
         return;
     }
     of_body.clear();
-    of_body.resize(bodies + 1, 0);
+    of_body.resize(nobody + 1, 0);
     level.clear();
     start.clear();
     start.push(0);
     for stretch in stretches.iter() {
         let Some(row) = order.get(stretch.start as usize).map(|row| &packed[*row as usize]) else { return };
-        let [first, second] = row.body.map(|b| b as usize);
-        let mut here = of_body[first];
-        if let Some(other) = of_body.get(second) {
-            here = here.max(*other);
-        }
+        // No body makes nobody wait.
+        of_body[nobody] = 0;
+        let [first, second] = row.bodies(nobody).map(|b| b as usize);
+        let here = of_body[first].max(of_body[second]);
         of_body[first] = here + 1;
-        if let Some(other) = of_body.get_mut(second) {
-            *other = here + 1;
-        }
+        of_body[second] = here + 1;
         level.push(here);
         if start.len() <= here as usize + 1 {
             start.push(0);
@@ -129,69 +254,41 @@ pub(super) fn interleave(
     }
 }
 
-/// Two partial dot products of six numbers, even and odd places.
+/// The bounds of a row's force, given the force that scales them. `ZERO`: infinity times zero is zero.
 #[inline(always)]
-fn dot6(j: &[f64; 6], a: &[f64]) -> [f64; 2] {
-    let a = &a[..6];
-    let mut s = [0.0; 2];
-    for l in 0..2 {
-        s[l] = (j[l] * a[l] + j[l + 2] * a[l + 2]) + j[l + 4] * a[l + 4];
-    }
-    s
+pub(super) fn bounds<const ZERO: bool>(r: &PackedRow, scale: f64) -> (f64, f64) {
+    let size = scale.abs();
+    if ZERO && size == 0.0 { (0.0, 0.0) } else { (r.lo * size, r.hi * size) }
 }
 
 /// `x` within `[lo, hi]`; a bound that is not a number is none.
 #[inline(always)]
-fn clamp(x: f64, lo: f64, hi: f64) -> f64 {
+pub(super) fn clamp(x: f64, lo: f64, hi: f64) -> f64 {
     let raised = if x < lo { lo } else { x };
     if raised > hi { hi } else { raised }
 }
 
-/// `a + delta b`. The sums are made in one value, so that they are stored in whole registers: what is stored in halves is
-/// slow to load as a whole.
-#[inline(always)]
-fn add_scaled(a: &[f64; 6], delta: f64, b: &[f64; 6]) -> [f64; 6] {
-    [
-        a[0] + delta * b[0],
-        a[1] + delta * b[1],
-        a[2] + delta * b[2],
-        a[3] + delta * b[3],
-        a[4] + delta * b[4],
-        a[5] + delta * b[5],
-    ]
-}
-
 /// What a sweep over the rows works on. `ZERO`: infinity times zero is zero; `DYNAMIC`: changes are recorded.
-pub(super) struct Sweep<'a, const ZERO: bool, const DYNAMIC: bool> {
+pub(super) struct Sweep<'a, Q, const ZERO: bool, const DYNAMIC: bool> {
     pub packed: &'a [PackedRow],
     pub lambda: &'a mut [f64],
     pub acceleration: &'a mut [SorAcceleration],
     pub weight: &'a [[f64; 2]],
     pub change: &'a mut [[f64; 2]],
+    /// Bodies from here on stand for none.
+    pub nobody: usize,
+    pub quads: PhantomData<Q>,
 }
 
-impl<const ZERO: bool, const DYNAMIC: bool> Sweep<'_, ZERO, DYNAMIC> {
+impl<Q: Quad, const ZERO: bool, const DYNAMIC: bool> Sweep<'_, Q, ZERO, DYNAMIC> {
     #[inline(always)]
-    fn load(&self, body: usize) -> [f64; 6] {
-        let a = &self.acceleration[body].0;
-        [a[0], a[1], a[2], a[3], a[4], a[5]]
+    fn load(&self, body: usize) -> Six<Q> {
+        Six::load(&self.acceleration[body].0)
     }
 
     #[inline(always)]
-    fn store(&mut self, body: usize, a: [f64; 6]) {
-        self.acceleration[body].0[..6].copy_from_slice(&a);
-    }
-
-    /// Clamps the change that a row wants and brings its force up to date. Returns the change.
-    #[inline(always)]
-    fn change_force(&mut self, row: usize, r: &PackedRow, old: f64, wanted: f64) -> f64 {
-        let size = self.lambda[r.scale as usize].abs();
-        let (mut lo, mut hi) = (r.lo * size, r.hi * size);
-        if ZERO && size == 0.0 {
-            (lo, hi) = (0.0, 0.0);
-        }
-        self.lambda[row] = clamp(old + wanted, lo, hi);
-        clamp(wanted, lo - old, hi - old)
+    fn store(&mut self, body: usize, a: Six<Q>) {
+        a.store(&mut self.acceleration[body].0);
     }
 
     /// Adds a change to the sums of the row's bodies.
@@ -201,9 +298,7 @@ impl<const ZERO: bool, const DYNAMIC: bool> Sweep<'_, ZERO, DYNAMIC> {
             let side = usize::from(delta < 0.0);
             let weight = self.weight[row];
             self.change[r.body[0] as usize][side] += delta * weight[0];
-            if r.body[1] != NO_BODY {
-                self.change[r.body[1] as usize][side] += delta * weight[1];
-            }
+            self.change[r.body[1] as usize][side] += delta * weight[1];
         }
     }
 
@@ -212,19 +307,14 @@ impl<const ZERO: bool, const DYNAMIC: bool> Sweep<'_, ZERO, DYNAMIC> {
     pub fn visit(&mut self, row: usize) {
         let r = &self.packed[row];
         let (first, second) = (r.body[0] as usize, r.body[1] as usize);
-        let two = r.body[1] != NO_BODY;
         let old = self.lambda[row];
-        let mut s = dot6(&r.j0, &self.acceleration[first].0);
-        if two {
-            let t = dot6(&r.j1, &self.acceleration[second].0);
-            s = [s[0] + t[0], s[1] + t[1]];
-        }
-        let wanted = (s[0] + (r.rhs - r.cfm * old)) + s[1];
-        let delta = self.change_force(row, r, old, wanted);
-        self.store(first, add_scaled(&self.load(first), delta, &r.b0));
-        if two {
-            self.store(second, add_scaled(&self.load(second), delta, &r.b1));
-        }
+        let (lo, hi) = bounds::<ZERO>(r, self.lambda[r.scale as usize]);
+        let (a0, a1) = (self.load(first), self.load(second));
+        let wanted = r.dot([a0, a1], r.rhs - r.cfm * old);
+        let delta = clamp(wanted, lo - old, hi - old);
+        self.lambda[row] = clamp(old + wanted, lo, hi);
+        self.store(first, a0.plus(r.vector(1).scaled(delta)));
+        self.store(second, a1.plus(r.vector(3).scaled(delta)));
         self.record(row, r, delta);
     }
 
@@ -245,14 +335,13 @@ impl<const ZERO: bool, const DYNAMIC: bool> Sweep<'_, ZERO, DYNAMIC> {
         let packed = self.packed;
         let r = rows.map(|row| &packed[row as usize]);
         let (first, second) = (r[0].body[0] as usize, r[0].body[1] as usize);
-        let two = r[0].body[1] != NO_BODY;
+        let two = second < self.nobody;
         let mut a0 = self.load(first);
-        let mut a1 = if two { self.load(second) } else { [0.0; 6] };
+        let mut a1 = if two { self.load(second) } else { Six::load(&[0.0; 6]) };
         let old = rows.map(|row| self.lambda[row as usize]);
         let mut wanted = [0.0; K];
         for k in 0..K {
-            let (s, t) = (dot6(&r[k].j0, &a0), dot6(&r[k].j1, &a1));
-            wanted[k] = ((s[0] + t[0]) + (r[k].rhs - r[k].cfm * old[k])) + (s[1] + t[1]);
+            wanted[k] = r[k].dot([a0, a1], r[k].rhs - r[k].cfm * old[k]);
         }
         let mut delta = [0.0; K];
         let mut c = 0;
@@ -261,9 +350,11 @@ impl<const ZERO: bool, const DYNAMIC: bool> Sweep<'_, ZERO, DYNAMIC> {
                 wanted[k] += coupling[c] * change;
                 c += 1;
             }
-            delta[k] = self.change_force(rows[k] as usize, r[k], old[k], wanted[k]);
-            a0 = add_scaled(&a0, delta[k], &r[k].b0);
-            a1 = add_scaled(&a1, delta[k], &r[k].b1);
+            let (lo, hi) = bounds::<ZERO>(r[k], self.lambda[r[k].scale as usize]);
+            self.lambda[rows[k] as usize] = clamp(old[k] + wanted[k], lo, hi);
+            delta[k] = clamp(wanted[k], lo - old[k], hi - old[k]);
+            a0 = a0.plus(r[k].vector(1).scaled(delta[k]));
+            a1 = a1.plus(r[k].vector(3).scaled(delta[k]));
             self.record(rows[k] as usize, r[k], delta[k]);
         }
         self.store(first, a0);

@@ -51,12 +51,14 @@ mod level;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod portable;
+mod quad;
 mod record;
 mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub use level::{Level, dispatch, dispatch_at, dispatch_few};
+pub use quad::{Pair, Quad, QuadKernel, dispatch_quads};
 pub use record::{NO_RECORD, Record};
 pub use wide::{Compute, compute_wide};
 

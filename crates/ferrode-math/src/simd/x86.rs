@@ -1,11 +1,11 @@
 //! Lanes of x86-64: SSE2, which every such machine has, AVX2 and AVX-512F.
 //!
-//! The types of AVX2 and AVX-512 are made in `run_avx2` and `run_avx512` only, which the dispatcher calls after it has found
+//! The types of AVX2 and AVX-512 are made in `run_avx2`, `run_quads` and `run_avx512` only, which the dispatcher calls after it has found
 //! the instructions on the machine. That is what makes the intrinsics below sound.
 
 use super::portable::{Block4, Block8, Block16};
 use super::sealed::Sealed;
-use super::{Compute, Kernel, Lanes, Mask, Record, Work};
+use super::{Compute, Kernel, Lanes, Mask, Pair, Quad, QuadKernel, Record, Work};
 use crate::Scalar;
 use core::arch::x86_64::*;
 use core::cell::Cell;
@@ -585,5 +585,114 @@ unsafe fn scatter16(records: &[Cell<Record>], index: &[u32; 16], numbers: [F32x1
                 }
             }
         }
+    }
+}
+
+/// Runs a kernel with AVX2's quads.
+///
+/// # Safety
+/// The machine has AVX2.
+#[target_feature(enable = "avx,avx2")]
+pub(super) unsafe fn run_quads<K: QuadKernel>(kernel: K) -> K::Out {
+    kernel.run::<F64x4>()
+}
+
+/// Four numbers in a register of AVX2.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub(super) struct F64x4(__m256d);
+
+/// Two numbers in a register, next to [`F64x4`].
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub(super) struct F64x2(__m128d);
+
+macro_rules! f64_operators {
+    ($($type:ident $add:ident $mul:ident;)+) => {$(
+        impl Add for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, b: Self) -> Self {
+                // SAFETY: values of the type are only made where the machine has AVX2.
+                Self(unsafe { $add(self.0, b.0) })
+            }
+        }
+
+        impl Mul for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, b: Self) -> Self {
+                // SAFETY: as in `add`.
+                Self(unsafe { $mul(self.0, b.0) })
+            }
+        }
+    )+};
+}
+
+f64_operators! {
+    F64x4 _mm256_add_pd _mm256_mul_pd;
+    F64x2 _mm_add_pd _mm_mul_pd;
+}
+
+// Each function below that takes no value of the type is called by a kernel that `run_quads` runs, and by nobody else: the types are
+// named in this file only.
+
+impl Quad for F64x4 {
+    type Pair = F64x2;
+
+    #[inline(always)]
+    fn load(from: &[f64; 4]) -> Self {
+        // SAFETY: the machine has AVX2; the array holds four numbers, of any alignment.
+        Self(unsafe { _mm256_loadu_pd(from.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64; 4]) {
+        // SAFETY: as in `load`.
+        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), self.0) };
+    }
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        // SAFETY: the machine has AVX2.
+        Self(unsafe { _mm256_set1_pd(x) })
+    }
+
+    #[inline(always)]
+    fn fold(self) -> F64x2 {
+        // SAFETY: the machine has AVX2.
+        F64x2(unsafe { _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0)) })
+    }
+}
+
+impl Pair for F64x2 {
+    #[inline(always)]
+    fn load(from: &[f64; 2]) -> Self {
+        // SAFETY: the machine has AVX2; the array holds two numbers, of any alignment.
+        Self(unsafe { _mm_loadu_pd(from.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut [f64; 2]) {
+        // SAFETY: as in `load`.
+        unsafe { _mm_storeu_pd(to.as_mut_ptr(), self.0) };
+    }
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        // SAFETY: the machine has AVX2.
+        Self(unsafe { _mm_set1_pd(x) })
+    }
+
+    #[inline(always)]
+    fn add_first(self, x: f64) -> Self {
+        // SAFETY: the machine has AVX2.
+        Self(unsafe { _mm_add_sd(self.0, _mm_set_sd(x)) })
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        // SAFETY: the machine has AVX2.
+        unsafe { _mm_cvtsd_f64(_mm_add_sd(self.0, _mm_unpackhi_pd(self.0, self.0))) }
     }
 }

@@ -1,0 +1,142 @@
+//! [`super`] on a few rows: in the space of forces.
+//!
+//! The rows of a box on the ground all act on one body, so each visit waits for the one before, and that takes as long as from a body's
+//! acceleration to its next one. With few rows the matrix is small enough to be formed: with `T_ji = -d_i (J_i B_j + [i = j] C_i)` and the
+//! changes `r_i = d_i (rhs_i - J_i a - C_i lambda_i)` that all rows want, a visit of row j is
+//!
+//! ```text
+//!    delta = clamp( r_j,  lo_j - lambda_j,  hi_j - lambda_j )        r += T_j delta
+//! ```
+//!
+//! and what the next row k wants, `r_k + T_jk delta`, is found at once, one product, one sum and the bounds after this one. The accelerations are
+//! added up at the end. The answer is that of visiting the bodies, to rounding.
+
+use super::sweep::{PackedRow, Six, bounds, clamp};
+use super::{InfTimesZero, SHUFFLE_PERIOD, SorAcceleration, SorParams, shuffle};
+use ferrode_math::simd::Quad;
+
+/// The most rows: a visit takes time in proportion to them.
+const MOST_ROWS: usize = 24;
+
+/// The memory of the method.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Small {
+    /// `-d J` by columns: six for each body, each with all rows' entries.
+    columns: Vec<[f64; 4]>,
+    /// `T`, row by row.
+    matrix: Vec<[f64; 4]>,
+    /// The changes that the rows want.
+    wanted: Vec<[f64; 4]>,
+}
+
+/// Whether the method is the faster one. With many bodies, rows seldom wait for each other.
+pub(super) fn suits(rows: usize, bodies: usize) -> bool {
+    (1..=MOST_ROWS).contains(&rows) && rows >= 6 * bodies
+}
+
+impl Small {
+    /// Does `params.iterations` iterations on forces that are zero, and adds the accelerations up.
+    #[inline(always)]
+    pub fn run<Q: Quad>(
+        &mut self,
+        packed: &[PackedRow],
+        order: &mut [u32],
+        lambda: &mut [f64],
+        acceleration: &mut [SorAcceleration],
+        params: &SorParams,
+        random: &mut impl FnMut(u32) -> u32,
+    ) {
+        self.load::<Q>(packed, acceleration.len());
+        for done in 0..params.iterations {
+            if done > 0 && done % SHUFFLE_PERIOD == 0 {
+                shuffle(order, random);
+            }
+            match params.inf_times_zero {
+                InfTimesZero::Unbounded => self.sweep::<Q, false>(packed, order, lambda),
+                InfTimesZero::Zero => self.sweep::<Q, true>(packed, order, lambda),
+            }
+        }
+        for (row, force) in packed.iter().zip(&*lambda) {
+            for (body, b) in row.body.into_iter().zip([row.vector::<Q>(1), row.vector(3)]) {
+                if let Some(SorAcceleration(a)) = acceleration.get_mut(body as usize) {
+                    Six::load(a).plus(b.scaled(*force)).store(a);
+                }
+            }
+        }
+    }
+
+    /// Forms the matrix.
+    #[inline(always)]
+    fn load<Q: Quad>(&mut self, packed: &[PackedRow], bodies: usize) {
+        let width = packed.len().div_ceil(4);
+        let Self { columns, matrix, wanted } = self;
+        columns.clear();
+        columns.resize(bodies * 6 * width, [0.0; 4]);
+        wanted.clear();
+        wanted.resize(width, [0.0; 4]);
+        let numbers = columns.as_flattened_mut();
+        for (i, row) in packed.iter().enumerate() {
+            wanted.as_flattened_mut()[i] = row.rhs;
+            for (side, body) in row.body.into_iter().enumerate() {
+                if (body as usize) < bodies {
+                    let start = body as usize * 24 * width + i;
+                    for (n, j) in row.numbers(2 * side).into_iter().enumerate() {
+                        numbers[start + 4 * n * width] = j;
+                    }
+                }
+            }
+        }
+        matrix.clear();
+        matrix.resize(packed.len() * width, [0.0; 4]);
+        for (i, (out, row)) in matrix.chunks_exact_mut(width).zip(packed).enumerate() {
+            for (side, body) in row.body.into_iter().enumerate() {
+                if (body as usize) < bodies {
+                    let columns = &columns[body as usize * 6 * width..][..6 * width];
+                    add_products::<Q>(out, columns, row.numbers(2 * side + 1));
+                }
+            }
+            out.as_flattened_mut()[i] -= row.cfm;
+        }
+    }
+
+    /// Visits every row once.
+    #[inline(always)]
+    fn sweep<Q: Quad, const ZERO: bool>(&mut self, packed: &[PackedRow], order: &[u32], lambda: &mut [f64]) {
+        let Self { matrix, wanted, .. } = self;
+        let width = wanted.len();
+        let at = |row: u32| row as usize;
+        let Some(mut row) = order.first().copied().map(at) else { return };
+        let mut change = wanted.as_flattened()[row];
+        // After the last row the first one again, whose change nobody asks for.
+        for next in order[1..].iter().chain(order.first()).copied().map(at) {
+            let r = &packed[row];
+            let column = &matrix[row * width..][..width];
+            let old = lambda[row];
+            let (lo, hi) = bounds::<ZERO>(r, lambda[r.scale as usize]);
+            let delta = clamp(change, lo - old, hi - old);
+            lambda[row] = clamp(old + change, lo, hi);
+            change = wanted.as_flattened()[next] + column.as_flattened()[next] * delta;
+            let delta = Q::splat(delta);
+            for (wanted, column) in wanted.iter_mut().zip(column) {
+                (Q::load(wanted) + Q::load(column) * delta).store(wanted);
+            }
+            row = next;
+        }
+    }
+}
+
+/// Adds a body's columns to a row of the matrix, each times a number of `b`.
+#[inline(always)]
+fn add_products<Q: Quad>(out: &mut [[f64; 4]], columns: &[[f64; 4]], b: [f64; 6]) {
+    let width = out.len();
+    let (c0, c1, c2) = (&columns[..width], &columns[width..][..width], &columns[2 * width..][..width]);
+    let c3 = &columns[3 * width..][..width];
+    let (c4, c5) = (&columns[4 * width..][..width], &columns[5 * width..][..width]);
+    let (b0, b1, b2) = (Q::splat(b[0]), Q::splat(b[1]), Q::splat(b[2]));
+    let (b3, b4, b5) = (Q::splat(b[3]), Q::splat(b[4]), Q::splat(b[5]));
+    for l in 0..width {
+        let linear = Q::load(&c0[l]) * b0 + Q::load(&c1[l]) * b1 + Q::load(&c2[l]) * b2;
+        let angular = Q::load(&c3[l]) * b3 + Q::load(&c4[l]) * b4 + Q::load(&c5[l]) * b5;
+        (Q::load(&out[l]) + (linear + angular)).store(&mut out[l]);
+    }
+}
