@@ -15,13 +15,15 @@
 //! caller has to turn to [`crate::dantzig`].
 
 mod blocks;
+mod eliminate;
 mod tableau;
 
 use crate::error::LcpError;
 use crate::kernel::{self, dot};
 use crate::problem::BoxedLcp;
 use crate::residual::row_residual;
-use blocks::{dot_from, sub_scaled, sub_scaled_4};
+use blocks::{dot_from, sub_scaled};
+use eliminate::eliminate;
 use ferrode_math::simd::{Compute, compute_wide};
 use tableau::{Place, Tableau};
 
@@ -65,6 +67,8 @@ pub struct CondensedWorkspace {
     m: Vec<f64>,
     /// The reciprocals of `D`.
     d: Vec<f64>,
+    /// Scratch: the blocks in which rows that are eliminated hold something.
+    held: Vec<u32>,
     tableau: Tableau,
     /// The rows of B that are free, a factor of their part of `S`, their solution.
     free: Vec<u32>,
@@ -197,10 +201,17 @@ impl CondensedWorkspace {
             let at = self.place[r] as usize;
             self.diagonal[at] = row[r];
             self.b[at] = p.b[r];
-            for (v, other) in row[first..r].iter().zip(&self.place[first..r]) {
-                let other = *other as usize;
-                let (low, high) = if other < at { (other, at) } else { (at, other) };
-                self.upper[low * width + high] = *v;
+            // Zeros are passed over four at a time.
+            let places = self.place[first..r].chunks(4);
+            for (values, places) in row[first..r].chunks(4).zip(places) {
+                if values.iter().fold(0, |bits, v| bits | v.to_bits()) << 1 == 0 {
+                    continue;
+                }
+                for (v, other) in values.iter().zip(places) {
+                    let other = *other as usize;
+                    let place = if other < at { other * width + at } else { at * width + other };
+                    self.upper[place] = *v;
+                }
             }
         }
         let rows = self.m.chunks_exact_mut(width).zip(self.upper.chunks_exact(width));
@@ -215,47 +226,11 @@ impl CondensedWorkspace {
     /// vanishes.
     #[inline(always)]
     fn eliminate(&mut self, n: usize, u: usize) -> Option<()> {
-        let width = width(n);
-        let Self { m, d, diagonal, .. } = self;
+        let Self { m, d, diagonal, held, .. } = self;
         d.clear();
         for start in (0..u).step_by(4) {
-            let end = u.min(start + 4);
-            for j in start..end {
-                let (above, below) = m.split_at_mut((j + 1) * width);
-                let row = &above[j * width..];
-                let pivot = row[j];
-                if pivot.is_nan() || pivot <= SINGULAR * diagonal[j] {
-                    return None;
-                }
-                let inverse = 1.0 / pivot;
-                d.push(inverse);
-                for (i, target) in (j + 1..end).zip(below.chunks_exact_mut(width)) {
-                    if row[i] != 0.0 {
-                        sub_scaled(target, row[i] * inverse, row, i & !3);
-                    }
-                }
-            }
-            let (above, below) = m.split_at_mut(end * width);
-            let rows = &above[start * width..];
-            if let [d0, d1, d2, d3] = d[start..] {
-                let (r0, rest) = rows.split_at(width);
-                let (r1, rest) = rest.split_at(width);
-                let (r2, r3) = rest.split_at(width);
-                for (i, target) in (end..n).zip(below.chunks_exact_mut(width)) {
-                    let f = [r0[i] * d0, r1[i] * d1, r2[i] * d2, r3[i] * d3];
-                    if f != [0.0; 4] {
-                        sub_scaled_4(target, f, [r0, r1, r2, r3], i & !3);
-                    }
-                }
-            } else {
-                for (row, d) in rows.chunks_exact(width).zip(&d[start..]) {
-                    for (i, target) in (end..n).zip(below.chunks_exact_mut(width)) {
-                        if row[i] != 0.0 {
-                            sub_scaled(target, row[i] * d, row, i & !3);
-                        }
-                    }
-                }
-            }
+            let rows = (start, u.min(start + 4), n);
+            eliminate(m.as_chunks_mut().0, width(n) / 4, rows, diagonal, d, held)?;
         }
         Some(())
     }

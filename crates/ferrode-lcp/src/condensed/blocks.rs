@@ -26,18 +26,6 @@ pub(super) fn sub_scaled(y: &mut [f64], s: f64, a: &[f64], from: usize) {
     }
 }
 
-/// Four calls of [`sub_scaled`] to the bit, from a place that begins a block, but `y` goes through memory once.
-#[inline(always)]
-pub(super) fn sub_scaled_4(y: &mut [f64], s: [f64; 4], a: [&[f64]; 4], from: usize) {
-    let y = y[from..].as_chunks_mut::<4>().0;
-    let (a0, a1) = (a[0][from..].as_chunks::<4>().0, a[1][from..].as_chunks::<4>().0);
-    let (a2, a3) = (a[2][from..].as_chunks::<4>().0, a[3][from..].as_chunks::<4>().0);
-    for ((((y, a0), a1), a2), a3) in y.iter_mut().zip(a0).zip(a1).zip(a2).zip(a3) {
-        let l = |l: usize| (((y[l] - s[0] * a0[l]) - s[1] * a1[l]) - s[2] * a2[l]) - s[3] * a3[l];
-        *y = [l(0), l(1), l(2), l(3)];
-    }
-}
-
 /// The dot product from place `from` on; both are whole blocks of four.
 #[inline(always)]
 pub(super) fn dot_from(a: &[f64], b: &[f64], from: usize) -> f64 {

@@ -203,9 +203,9 @@ fn solve_cone(
     Solved::Partly
 }
 
-/// The most rows of a small figure, all and those without bounds.
+/// The most rows of small figures: all, and those without bounds of one figure, and of two that lie on each other.
 const MOST_FIGURE_ROWS: usize = 160;
-const MOST_HELD_ROWS: usize = 60;
+const MOST_HELD_ROWS: [usize; 2] = [60, 96];
 
 impl RowSystem {
     /// Whether the rows are those of a jointed figure, such as a person on the ground, and few enough for the dense method. Measured: the
@@ -218,7 +218,10 @@ impl RowSystem {
         let held =
             bounds.filter(|((lo, hi), f)| **f < 0 && **lo == f64::NEG_INFINITY && **hi == f64::INFINITY);
         let held = held.count();
-        held <= MOST_HELD_ROWS && rows - held <= 3 * held
+        let bounded = rows - held;
+        // With few bounded rows the sparse method has few states to find.
+        let most = MOST_HELD_ROWS[usize::from(3 * bounded >= held)];
+        held <= most && bounded <= 3 * held
     }
 
     fn load(&mut self, island: &Island, fps: f64, free: &[FreeMotion]) {
