@@ -4,7 +4,7 @@
 use crate::arena::NIL;
 use crate::body::Body;
 use crate::joint::{Contact, JointKind};
-use crate::{BodyKey, Error, GroupKey, JointFeedback, JointKey, JointType, StepReport, Stepper, World};
+use crate::{BodyKey, Error, JointFeedback, JointKey, JointType, StepReport, Stepper, World};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Quat, Vec3};
 
@@ -100,7 +100,7 @@ impl World {
     #[doc(hidden)]
     pub fn joint_feedback_mut(&mut self, joint: JointKey) -> Result<Option<&mut JointFeedback>, Error> {
         let index = self.joint_index(joint)?;
-        Ok(self.joints.at_mut(index).feedback.as_mut())
+        Ok(self.joints.at_mut(index).feedback.as_deref_mut())
     }
 
     /// Sets the parameter of ODE's number, whatever the value.
@@ -132,18 +132,13 @@ impl World {
         Ok(self.joints.at(self.joint_index(joint)?).kind.model().details())
     }
 
-    /// As [`World::create_contact`], whatever the numbers.
-    ///
-    /// # Errors
-    /// [`Error::NoSuchGroup`].
+    /// A contact joint in limbo, whatever the numbers: `write` writes them over those of an earlier contact. The caller's number of the joint is
+    /// `user_data`.
     #[doc(hidden)]
-    pub fn create_contact_unchecked(
-        &mut self,
-        group: Option<GroupKey>,
-        contact: &Contact,
-    ) -> Result<JointKey, Error> {
-        let contact = self.contact_box(contact);
-        self.insert_joint(JointKind::Contact(contact), group)
+    #[inline]
+    pub fn create_contact_unchecked(&mut self, user_data: u64, write: impl FnOnce(&mut Contact)) -> JointKey {
+        let contact = self.contact_box(write);
+        self.push_joint(JointKind::Contact(contact), NIL, user_data)
     }
 
     /// Whether `test` holds for the type of any joint that links the two; `None` for one of them stands for the static

@@ -485,15 +485,12 @@ impl World {
 
     // ---- joints ----
 
-    /// A contact in memory of a destroyed one, if there is any.
-    pub(crate) fn contact_box(&mut self, contact: &Contact) -> Box<Contact> {
-        match self.scratch.spare_contacts.pop() {
-            Some(mut spare) => {
-                (*spare).clone_from(contact);
-                spare
-            }
-            None => Box::new(contact.clone()),
-        }
+    /// A contact in memory of a destroyed one, if there is any, after `write` has written its numbers.
+    #[inline]
+    pub(crate) fn contact_box(&mut self, write: impl FnOnce(&mut Contact)) -> Box<Contact> {
+        let mut contact = self.scratch.spare_contacts.pop().unwrap_or_default();
+        write(&mut contact);
+        contact
     }
 
     pub(crate) fn insert_joint(
@@ -502,18 +499,22 @@ impl World {
         group: Option<GroupKey>,
     ) -> Result<JointKey, Error> {
         let group = group.map(|g| self.group_index(g)).transpose()?;
-        let mut joint = Joint::new(kind);
-        joint.group = group.unwrap_or(NIL);
-        joint.next = self.joint_list.first;
-        let key = self.joints.insert(joint);
-        if self.joint_list.first != NIL {
-            self.joints.at_mut(self.joint_list.first).prev = key.index;
+        let key = self.push_joint(kind, group.unwrap_or(NIL), 0);
+        if let Some(group) = group {
+            self.groups.at_mut(group).joints.push(key.0);
+        }
+        Ok(key)
+    }
+
+    /// A joint at the head of the world's list.
+    pub(crate) fn push_joint(&mut self, kind: JointKind, group: u32, user_data: u64) -> JointKey {
+        let next = self.joint_list.first;
+        let key = self.joints.insert(Joint { group, next, user_data, ..Joint::new(kind) });
+        if next != NIL {
+            self.joints.at_mut(next).prev = key.index;
         }
         self.joint_list.first = key.index;
-        if let Some(group) = group {
-            self.groups.at_mut(group).joints.push(key);
-        }
-        Ok(JointKey(key))
+        JointKey(key)
     }
 
     /// Destroys a joint.
@@ -585,7 +586,8 @@ impl World {
                 self.push_link(index * 2 + side as u32, body);
             }
         }
-        if bodies[0] != NIL {
+        // A contact's frame is the world's: it does not look at its bodies.
+        if bodies[0] != NIL && joint_type != JointType::Contact {
             let joint = self.joints.at_mut(index);
             let ends = ends_in(&self.bodies, joint);
             joint.kind.model_mut().attached(&ends);
@@ -772,7 +774,7 @@ impl World {
     /// [`Error::NoSuchJoint`].
     pub fn set_joint_feedback(&mut self, joint: JointKey, on: bool) -> Result<(), Error> {
         let index = self.joint_index(joint)?;
-        self.joints.at_mut(index).feedback = on.then(JointFeedback::default);
+        self.joints.at_mut(index).feedback = on.then(Box::default);
         Ok(())
     }
 
@@ -781,7 +783,7 @@ impl World {
     /// # Errors
     /// [`Error::NoSuchJoint`].
     pub fn joint_feedback(&self, joint: JointKey) -> Result<Option<&JointFeedback>, Error> {
-        Ok(self.joints.at(self.joint_index(joint)?).feedback.as_ref())
+        Ok(self.joints.at(self.joint_index(joint)?).feedback.as_deref())
     }
 
     /// The caller's number of a joint.

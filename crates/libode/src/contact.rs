@@ -2,8 +2,8 @@
 
 use crate::real::{Real, Real4, f, vector};
 use core::ffi::{c_int, c_void};
-use ferrode_dynamics::{Contact, Surface, SurfaceMode};
-use ferrode_math::{ContactPoint, Vec3};
+use ferrode_dynamics::{Contact, SurfaceMode};
+use ferrode_math::Vec3;
 
 /// `dSurfaceParameters`.
 #[repr(C)]
@@ -52,38 +52,39 @@ pub struct ContactRecord {
 const _: () = assert!(size_of::<Real>() != 8 || size_of::<ContactRecord>() == 248);
 
 impl ContactRecord {
-    /// What the engine needs of it. Programs fill in only what the mode asks for; the rest may be whatever was in memory.
-    pub fn to_engine(self) -> Contact {
-        let s = self.surface;
+    /// Writes down what the engine needs of it. Programs fill in only what the mode asks for; the rest may be whatever was in memory.
+    ///
+    /// Number by number from where the program wrote it to where the engine keeps it: copies of whole records would wait for each number
+    /// to be stored.
+    #[inline]
+    pub fn write_to(&self, contact: &mut Contact) {
+        let s = &self.surface;
         let mode = SurfaceMode(s.mode.cast_unsigned());
         let asked = |by: SurfaceMode, x: Real| if mode.has(by) { f(x) } else { 0.0 };
         // Not asked for without rolling, whatever else is.
         let turning = if mode.has(SurfaceMode::ROLLING) { SurfaceMode::MU2 } else { SurfaceMode::ROLLING };
-        Contact {
-            surface: Surface {
-                mode,
-                mu: f(s.mu),
-                mu2: asked(SurfaceMode::MU2, s.mu2),
-                rho: asked(SurfaceMode::ROLLING, s.rho),
-                rho2: asked(turning, s.rho2),
-                rho_n: asked(turning, s.rho_n),
-                bounce: asked(SurfaceMode::BOUNCE, s.bounce),
-                bounce_velocity: asked(SurfaceMode::BOUNCE, s.bounce_velocity),
-                soft_erp: asked(SurfaceMode::SOFT_ERP, s.soft_erp),
-                soft_cfm: asked(SurfaceMode::SOFT_CFM, s.soft_cfm),
-                motion1: asked(SurfaceMode::MOTION1, s.motion1),
-                motion2: asked(SurfaceMode::MOTION2, s.motion2),
-                motion_n: asked(SurfaceMode::MOTION_N, s.motion_n),
-                slip1: asked(SurfaceMode::SLIP1, s.slip1),
-                slip2: asked(SurfaceMode::SLIP2, s.slip2),
-                ..Surface::default()
-            },
-            point: ContactPoint {
-                position: vector(&self.geom.position),
-                normal: vector(&self.geom.normal),
-                depth: f(self.geom.depth),
-            },
-            fdir1: if mode.has(SurfaceMode::FDIR1) { vector(&self.fdir1) } else { Vec3::ZERO },
-        }
+        let to = &mut contact.surface;
+        to.mode = mode;
+        to.mu = f(s.mu);
+        to.mu2 = asked(SurfaceMode::MU2, s.mu2);
+        to.rho = asked(SurfaceMode::ROLLING, s.rho);
+        to.rho2 = asked(turning, s.rho2);
+        to.rho_n = asked(turning, s.rho_n);
+        to.bounce = asked(SurfaceMode::BOUNCE, s.bounce);
+        to.bounce_velocity = asked(SurfaceMode::BOUNCE, s.bounce_velocity);
+        to.soft_erp = asked(SurfaceMode::SOFT_ERP, s.soft_erp);
+        to.soft_cfm = asked(SurfaceMode::SOFT_CFM, s.soft_cfm);
+        to.motion1 = asked(SurfaceMode::MOTION1, s.motion1);
+        to.motion2 = asked(SurfaceMode::MOTION2, s.motion2);
+        to.motion_n = asked(SurfaceMode::MOTION_N, s.motion_n);
+        to.slip1 = asked(SurfaceMode::SLIP1, s.slip1);
+        to.slip2 = asked(SurfaceMode::SLIP2, s.slip2);
+        to.max_correcting_velocity = None;
+        to.surface_layer = None;
+        let to = &mut contact.point;
+        to.position = vector(&self.geom.position);
+        to.normal = vector(&self.geom.normal);
+        to.depth = f(self.geom.depth);
+        contact.fdir1 = if mode.has(SurfaceMode::FDIR1) { vector(&self.fdir1) } else { Vec3::ZERO };
     }
 }

@@ -91,6 +91,17 @@ impl<T: Copy, const N: usize> In<T, N> {
         self.optional().ok_or(Fault::ARGUMENT)
     }
 
+    /// A look at the values where they are, for large ones; or the fault for a null pointer. `work` does not call out.
+    #[inline]
+    pub fn look<R>(self, work: impl FnOnce(&[T; N]) -> R) -> Outcome<R> {
+        if self.0.is_null() {
+            return Err(Fault::ARGUMENT);
+        }
+        // SAFETY: not null, so by the type's contract good for N values of T, which nobody changes while `work` looks at them; C
+        // aligns T naturally.
+        Ok(work(unsafe { &*self.0.cast::<[T; N]>() }))
+    }
+
     /// The values; `None` for a null pointer.
     #[inline]
     pub fn optional(self) -> Option<[T; N]> {

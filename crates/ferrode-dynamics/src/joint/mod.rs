@@ -111,7 +111,8 @@ pub(crate) struct Joint {
     /// World list.
     pub next: u32,
     pub prev: u32,
-    pub feedback: Option<JointFeedback>,
+    /// Few joints have it, and contacts come and go by thousands: apart, to keep them small.
+    pub feedback: Option<Box<JointFeedback>>,
     pub user_data: u64,
     pub kind: JointKind,
 }
@@ -288,6 +289,7 @@ pub trait JointData: sealed::Sealed + Sized {
 }
 
 impl Joint {
+    #[inline]
     pub fn new(kind: JointKind) -> Self {
         Self {
             nodes: [Node::DETACHED; 2],
@@ -457,7 +459,7 @@ impl World {
     /// [`Error::NoSuchGroup`]; [`Error::NotFinite`] if position, normal or depth are not finite.
     pub fn create_contact(&mut self, group: Option<GroupKey>, contact: &Contact) -> Result<JointKey, Error> {
         contact.check()?;
-        let contact = self.contact_box(contact);
+        let contact = self.contact_box(|spare| spare.clone_from(contact));
         self.insert_joint(JointKind::Contact(contact), group)
     }
 

@@ -12,22 +12,17 @@ use crate::stepping::listen;
 use core::ffi::{c_int, c_void};
 use ferrode_dynamics::{BodyKey, Error, JointKey, JointType, World};
 
-/// A record for a joint that `make` creates in the engine.
+/// A record for a joint that `make` creates in the engine, with the number that leads back to the record.
 pub fn create(
-    world: WorldId,
+    world: &'static WorldRecord,
     group: GroupId,
     joint_type: JointType,
-    make: impl FnOnce(&mut World) -> Result<JointKey, Error>,
+    make: impl FnOnce(&mut World, u64) -> Result<JointKey, Error>,
 ) -> Outcome<JointId> {
-    let world = world.get()?;
     let group = if group.is_null() { None } else { Some(group.get()?) };
     let record = group.and_then(GroupRecord::reuse).unwrap_or_else(|| JointRecord::pool().create());
     let handle = JointId::of(record);
-    let key = world.engine(|engine| {
-        let key = make(engine)?;
-        engine.set_joint_user_data(key, number_of(handle)).map(|()| key)
-    });
-    let Ok(key) = key else {
+    let Ok(key) = world.engine(|engine| make(engine, number_of(handle))) else {
         JointRecord::pool().destroy(record);
         return Err(Fault::ARGUMENT);
     };
@@ -57,7 +52,10 @@ fn destroy_record(record: &'static JointRecord) {
 }
 
 fn of(joint_type: JointType, world: WorldId, group: GroupId) -> Outcome<JointId> {
-    create(world, group, joint_type, |engine| engine.create_joint_of_type(joint_type, None))
+    create(world.get()?, group, joint_type, |engine, number| {
+        let key = engine.create_joint_of_type(joint_type, None)?;
+        engine.set_joint_user_data(key, number).map(|()| key)
+    })
 }
 
 /// A world, and keys of two of its bodies; `None` is the static world.
@@ -156,9 +154,12 @@ creators! {
 
 export! {
     fn dJointCreateContact(world: WorldId, group: GroupId, contact: In<ContactRecord>) -> JointId {
-        world.get()?;
-        let contact = contact.get()?[0].to_engine();
-        create(world, group, JointType::Contact, |engine| engine.create_contact_unchecked(None, &contact))?
+        let world = world.get()?;
+        contact.look(|[contact]| {
+            create(world, group, JointType::Contact, |engine, number| {
+                Ok(engine.create_contact_unchecked(number, |out| contact.write_to(out)))
+            })
+        })??
     }
 
     /// Without effect for a joint of a group.
