@@ -163,6 +163,11 @@ impl World {
             let bodies = &islands.bodies[first_body..body_end];
             let joints = &islands.joints[first_joint..joint_end];
             (first_body, first_joint) = (body_end, joint_end);
+            let survivors = self.survivors(bodies, joints);
+            let (bodies, joints) = match &survivors {
+                Some((bodies, joints)) => (bodies.as_slice(), joints.as_slice()),
+                None => (bodies, joints),
+            };
 
             self.gather(bodies, joints, island);
             self.apply_gravity(bodies, island);
@@ -248,6 +253,17 @@ impl World {
                 report.quarantined.push(BodyKey(self.bodies.key_of(slot)));
             }
         }
+    }
+
+    /// What is left of an island if callbacks of an earlier one have destroyed some of it; `None` if all is.
+    fn survivors(&self, bodies: &[u32], joints: &[u32]) -> Option<(Vec<u32>, Vec<u32>)> {
+        let body = |index: &u32| self.bodies.get(*index).is_some();
+        let joint = |index: &u32| self.joints.get(*index).is_some();
+        if bodies.iter().all(body) && joints.iter().all(joint) {
+            return None;
+        }
+        let bodies = bodies.iter().copied().filter(body).collect();
+        Some((bodies, joints.iter().copied().filter(joint).collect()))
     }
 
     /// Copies an island's bodies into a dense array. A quarantined body at the end of a joint comes along as an immovable
