@@ -18,7 +18,7 @@
 //! **Order.** At first all rows without a friction index in their order, then all with one. At the start of the iterations 8, 16, 24, …
 //! the whole order is shuffled in place: for k = 1 … m-1, r = random(k + 1), entries k and r change places.
 //!
-//! Up to two dozen rows on few bodies, such as a box on the ground, are visited in the same order on their matrix ([`small`]).
+//! Up to two dozen rows on few bodies, such as a box on the ground, are visited in the same order on their matrix (`small`).
 
 mod small;
 mod sweep;
