@@ -19,9 +19,10 @@ impl Ferrode {
         Self::build(scene, threads).unwrap_or_else(|e| panic!("{}: {e}", scene.name))
     }
 
-    fn build(scene: &Scene, _threads: usize) -> Result<Self, Error> {
+    fn build(scene: &Scene, threads: usize) -> Result<Self, Error> {
         let mut world = World::new();
         world.stepper = Stepper::Substep;
+        world.set_threads(threads);
         world.set_gravity(Vec3::Z * -scene.gravity)?;
         world.set_default_material(Material::with_friction(scene.friction))?;
         if !scene.sleeping {
