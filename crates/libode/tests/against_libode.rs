@@ -125,7 +125,14 @@ fn programs_print_the_same() {
                 unchecked.remove(name);
             }
         }
-        faults.extend(compare(&name, &run(&program, None), &ours, tolerance(&source)));
+        let mut theirs = run(&program, None);
+        for _ in 0..5 {
+            // Libode's own threads race, rarely, until it aborts. Ours has one run, and must end as it should.
+            if theirs.contains("signal:") && !ours.contains("signal:") {
+                theirs = run(&program, None);
+            }
+        }
+        faults.extend(compare(&name, &theirs, &ours, tolerance(&source)));
     }
     let checked = functions - unchecked.len();
     println!("{} programs, with the results of {checked} of {functions} functions", programs().len());
