@@ -7,6 +7,7 @@ use crate::record::Recorder;
 use crate::simulation::Simulation;
 use crate::stats::Stats;
 use crate::summary::Summary;
+use ferrode::{DirectSettings, Stepper, World};
 use ferrode_scene::Warning;
 use std::io::Write;
 use std::time::Instant;
@@ -20,6 +21,9 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     simulation.world_mut().set_threads(args.threads);
     if let Some(stepper) = args.stepper {
         simulation.world_mut().stepper = stepper;
+    }
+    if args.project {
+        project_joints(simulation.world_mut())?;
     }
     if !args.quiet {
         print_warnings(&simulation.warnings);
@@ -54,6 +58,17 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
         exit: Exit::NotFinite,
         message: format!("error: the simulation did not stay finite: {who}"),
     })
+}
+
+/// Has each step end with the joints closed.
+fn project_joints(world: &mut World) -> Result<(), Failure> {
+    if world.stepper != Stepper::Direct {
+        let name = stepper_name(world.stepper);
+        return Err(Failure::usage(format_args!("--project is for the stepper direct, not for {name}")));
+    }
+    let settings = DirectSettings { project_joints: true, ..*world.direct() };
+    world.set_direct(settings);
+    Ok(())
 }
 
 /// Makes `steps` steps, and calls `after` after each with its number, from 1.

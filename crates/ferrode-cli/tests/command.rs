@@ -101,6 +101,11 @@ fn the_summary_has_every_figure() {
     }
     let quick = ferrode(&["run", &data("arm.sdf"), "--steps", "5", "--stepper", "quick"]);
     assert!(quick.out.contains("stepper quick"));
+    let projected = ferrode(&["run", &data("arm.sdf"), "--steps", "5", "--project"]);
+    assert!(projected.out.contains("stepper direct"), "{}", projected.err);
+    let wrong = ferrode(&["run", &data("arm.sdf"), "--steps", "5", "--stepper", "quick", "--project"]);
+    assert_eq!(wrong.code, 2);
+    assert!(wrong.err.contains("--project is for the stepper direct, not for quick"), "{}", wrong.err);
     // A file that says nothing of a solver is stepped with Quick.
     assert!(
         ferrode(&["run", &data("box.sdf"), "--steps", "0"])

@@ -16,6 +16,15 @@ pub(crate) fn advance_pose(body: &mut Body, h: f64) {
     body.pose_version = body.pose_version.wrapping_add(1);
 }
 
+/// Moves a body and turns it about its centre of mass, both in the world frame, without a change of its velocity.
+pub(crate) fn displace(body: &mut Body, linear: Vec3, angular: Vec3) {
+    let frame = &mut body.frame;
+    frame.position += linear;
+    let q = finite_part(angular, angular.length(), 1.0) * frame.quaternion;
+    frame.quaternion = q.normalized().unwrap_or(q);
+    frame.rotation = frame.quaternion.to_matrix();
+}
+
 /// Slows a body down that spins faster than it may.
 pub(crate) fn limit_angular_speed(body: &mut Body) {
     let limit = body.max_angular_speed;

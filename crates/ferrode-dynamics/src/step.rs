@@ -1,6 +1,7 @@
 //! One step: the table of contents of the engine.
 
 mod fast;
+mod project;
 
 use crate::body::{Body, BodyKey};
 use crate::ends::{Ends, Frame, StepContext};
@@ -78,6 +79,8 @@ pub(crate) struct Scratch {
     #[allow(clippy::vec_box)]
     pub spare_contacts: Vec<Box<crate::joint::Contact>>,
     fast: fast::Workspace,
+    /// The island once more, with the bodies where the step has brought them.
+    moved_island: Island,
     pub substep: substep::Workspace,
 }
 
@@ -151,7 +154,7 @@ impl World {
         report.clear();
         self.timing.begin();
         let mut scratch = core::mem::take(&mut self.scratch);
-        let Scratch { islands, island, direct, quick, .. } = &mut scratch;
+        let Scratch { islands, island, moved_island, direct, quick, .. } = &mut scratch;
 
         self.quarantine_unusable_bodies(report);
         self.auto_disable_bodies(h);
@@ -201,7 +204,11 @@ impl World {
                 _ => quick::update_velocities(island, h, quick),
             }
             self.timing.spent_on(Phase::Solve);
-            self.move_bodies(bodies, island, (stepper, h), moved, report);
+            let projects = stepper == Stepper::Direct && self.params.direct.project_joints;
+            if projects {
+                self.move_and_project(bodies, island, moved_island, &ctx, report.islands, direct);
+            }
+            self.move_bodies(bodies, island, (stepper, h, projects), moved, report);
             self.timing.spent_on(Phase::Integrate);
         }
         direct::end_step(direct);
@@ -376,12 +383,12 @@ impl World {
         }
     }
 
-    /// Velocity, pose, moved callback, damping, cleared accumulators: body after body.
+    /// Velocity and pose, unless the bodies were moved already, moved callback, damping, cleared accumulators: body after body.
     fn move_bodies(
         &mut self,
         bodies: &[u32],
         island: &Island,
-        (stepper, h): (Stepper, f64),
+        (stepper, h, moved): (Stepper, f64, bool),
         observer: MovedObserver<'_>,
         report: &mut StepReport,
     ) {
@@ -398,12 +405,12 @@ impl World {
             }
             let key = self.body_key(*index);
             let body = self.bodies.at_mut(*index);
-            if stepper == Stepper::Direct {
-                let mut advanced = *solver_body;
-                direct::update_velocity(&mut advanced, h);
-                body.set_velocities(&advanced);
+            if !moved {
+                if stepper == Stepper::Direct {
+                    body.advance_velocity(solver_body, h);
+                }
+                integrate::advance_pose(body, h);
             }
-            integrate::advance_pose(body, h);
             // What moved it, for callbacks to see: gravity and the forces of joints at stops are in it.
             body.force = solver_body.force;
             body.torque = solver_body.torque;
@@ -445,6 +452,13 @@ impl SolverBody {
 }
 
 impl Body {
+    /// The velocity after a step of `Direct`.
+    fn advance_velocity(&mut self, from: &SolverBody, h: f64) {
+        let mut advanced = *from;
+        direct::update_velocity(&mut advanced, h);
+        self.set_velocities(&advanced);
+    }
+
     fn set_velocities(&mut self, from: &SolverBody) {
         self.frame.linear_velocity = from.frame.linear_velocity;
         self.frame.angular_velocity = from.frame.angular_velocity;

@@ -194,7 +194,7 @@ impl World {
         self.write_feedback(island);
         report.count_island(work.bodies.len(), island.rows.len(), solved);
         report.islands -= 1;
-        self.move_bodies(&work.bodies, island, (Stepper::Direct, k), moved, report);
+        self.move_bodies(&work.bodies, island, (Stepper::Direct, k, false), moved, report);
     }
 
     /// Bodies at the end of a joint that sleep on come along as immovable ones.
