@@ -50,6 +50,9 @@
 mod level;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+mod octet;
+#[cfg(target_arch = "x86_64")]
+mod octet_x86;
 mod portable;
 mod quad;
 mod record;
@@ -58,6 +61,7 @@ mod wide;
 mod x86;
 
 pub use level::{Level, dispatch, dispatch_at, dispatch_few};
+pub use octet::{Octet, OctetKernel, dispatch_octets};
 pub use quad::{Pair, Quad, QuadKernel, dispatch_quads};
 pub use record::{NO_RECORD, Record};
 pub use wide::{Compute, compute_wide};
