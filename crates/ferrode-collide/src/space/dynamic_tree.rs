@@ -3,6 +3,7 @@
 use super::binning::{self, Item};
 use super::f32_box::{Box32, Pending};
 use super::mirror::{Mirror, Search};
+use super::packed::PackedTree;
 use super::pair_nodes::{Node, Nodes, PairNode};
 use super::probe::{Probe, RayLanes, nearer};
 use super::tree::split;
@@ -46,7 +47,10 @@ pub(crate) struct DynamicTree {
     /// Working memory of [`build_soon`](Self::build_soon).
     items: Vec<Item>,
     stack: Vec<u32>,
-    mirror: Mirror,
+    /// For boxes, and for probes that packed trees are not for.
+    wide: Mirror<WideTree>,
+    /// For rays and what moves.
+    packed: Mirror<PackedTree>,
 }
 
 /// A tree is built anew when its boxes have grown to this part of those of a new one.
@@ -82,7 +86,7 @@ impl DynamicTree {
 
     /// Empties the tree to build it over these payloads; whether there are any.
     fn start(&mut self, payloads: impl ExactSizeIterator<Item = u32>) -> bool {
-        self.mirror.drop_copy();
+        self.drop_copies();
         self.nodes.clear();
         self.parents.clear();
         self.free.clear();
@@ -182,7 +186,7 @@ impl DynamicTree {
 
     /// Adds a leaf. The payload must not be in the tree.
     pub fn insert(&mut self, payload: u32, bounds: &Box32) {
-        self.mirror.drop_copy();
+        self.drop_copies();
         self.grow_leaves(payload);
         self.count += 1;
         if self.count == 1 {
@@ -212,7 +216,7 @@ impl DynamicTree {
         if i == NONE {
             return;
         }
-        self.mirror.drop_copy();
+        self.drop_copies();
         self.count -= 1;
         if i == 0 {
             return;
@@ -267,7 +271,7 @@ impl DynamicTree {
 
     /// Gives a leaf of the tree another box.
     fn change(&mut self, payload: u32, bounds: &Box32) {
-        self.mirror.drop_copy();
+        self.drop_copies();
         let i = self.leaves[payload as usize];
         let sibling = self.nodes.bounds(i ^ 1);
         if i != 0 {
@@ -376,18 +380,37 @@ impl DynamicTree {
         }
     }
 
+    /// For every change of the tree.
+    #[inline]
+    fn drop_copies(&mut self) {
+        self.wide.drop_copy();
+        self.packed.drop_copy();
+    }
+
+    fn part(&self, i: u32) -> Part<u32> {
+        let node = self.nodes.get(i);
+        Part { bounds: node.bounds, leaf: node.is_leaf().then_some((node.tag, 1)), of: i }
+    }
+
+    fn open(&self, i: u32) -> [Part<u32>; 2] {
+        let (child, _) = self.nodes.numbers(i);
+        [self.part(child), self.part(child + 1)]
+    }
+
     /// The tree with four boxes to a node, if that is worth while.
     #[inline]
     fn wide(&self, search: Search) -> Option<&WideTree> {
-        let part = |i: u32| {
-            let node = self.nodes.get(i);
-            Part { bounds: node.bounds, leaf: node.is_leaf().then_some((node.tag, 1)), of: i }
-        };
-        let open = |i: u32| {
-            let (child, _) = self.nodes.numbers(i);
-            [part(child), part(child + 1)]
-        };
-        self.mirror.get(search, self.count, || part(0), open)
+        self.wide.get(search, self.count, || {
+            let mut tree = WideTree::default();
+            tree.build(self.part(0), |i| self.open(i));
+            tree
+        })
+    }
+
+    /// The tree with seven boxes to a node, if that is worth while.
+    #[inline]
+    fn packed(&self) -> Option<&PackedTree> {
+        self.packed.get(Search::Seek, self.count, || PackedTree::build(self.part(0), |i| self.open(i)))
     }
 
     /// Visits the leaves below the root that `test` lets through, two siblings at a time.
@@ -419,14 +442,24 @@ impl DynamicTree {
     /// the boxes tell. `found` may lower the limit.
     #[inline]
     pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
-        if self.count == 0 || probe.enter(&self.nodes.bounds(0), *limit).is_none() {
+        if self.count == 0 {
             return;
         }
-        if let Some(wide) = self.wide(Search::Seek) {
+        let all = &self.nodes.bounds(0);
+        if probe.enter(all, *limit).is_none() {
+            return;
+        }
+        let bundle = probe.bundle(all).filter(|_| self.count < PackedTree::MOST);
+        if let Some(bundle) = &bundle {
+            if let Some(packed) = self.packed() {
+                packed.seek(bundle, limit, found);
+                return;
+            }
+        } else if let Some(wide) = self.wide(Search::Seek) {
             wide.seek(probe, limit, |payload, _, limit| found(payload, limit));
             return;
         }
-        match probe.lanes(&self.nodes.bounds(0)) {
+        match probe.lanes(all) {
             Some(lanes) => self.seek_by(limit, found, |pair, _, near| lanes.enter_pair(pair, near)),
             None => self.seek_by(limit, found, |pair, limit, _| probe.enter_pair(pair, limit)),
         }
@@ -584,6 +617,8 @@ mod tests {
                 let (binary, asked) = (tree.clone(), tree.clone());
                 (0..=count).for_each(|_| asked.query(&items[0].1, |_| {}));
                 assert!(asked.wide(Search::Query).is_some() && binary.wide(Search::Query).is_none());
+                (0..=count).for_each(|_| _ = asked.packed());
+                assert!(asked.packed().is_some());
                 assert_eq!(list(&asked), list(&binary));
                 let along_axis = Vec3::new(0.0, path.y, 0.0);
                 for probe in [

@@ -109,6 +109,32 @@ impl<T: Copy + Default> Pending<T> {
         }
     }
 
+    /// How many wait, up to those that the stack has room for.
+    #[inline(always)]
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// As [`push`](Self::push), but comes after the lesser ones of those that were pushed when there were `bottom`; these must
+    /// be in order.
+    #[inline(always)]
+    pub fn push_sorted(&mut self, node: T, bottom: usize)
+    where
+        T: PartialOrd,
+    {
+        if self.len < FIRST {
+            let mut k = self.len;
+            while k > bottom && self.first[k - 1] < node {
+                self.first[k] = self.first[k - 1];
+                k -= 1;
+            }
+            self.first[k] = node;
+            self.len += 1;
+        } else {
+            self.spilled.push(node);
+        }
+    }
+
     /// As [`push`](Self::push) where `wanted`, else nothing; does not branch on it.
     #[inline(always)]
     pub fn push_if(&mut self, wanted: bool, node: T) {

@@ -1,6 +1,5 @@
-//! A wide copy of a tree that changes, made when it is asked more often than it changes.
+//! Copies of a tree that changes, made when it is asked more often than it changes.
 
-use super::wide::{Part, WideTree};
 use core::sync::atomic::{AtomicU32, Ordering};
 use std::sync::OnceLock;
 
@@ -13,22 +12,28 @@ pub(super) enum Search {
     Seek = 4,
 }
 
-/// A wide copy of a binary tree, made by the first of many searches and dropped with the next change.
-#[derive(Debug, Default)]
-pub(super) struct Mirror {
-    tree: OnceLock<WideTree>,
+/// A copy of a binary tree that is searched faster, made by the first of many searches and dropped with the next change.
+#[derive(Debug)]
+pub(super) struct Mirror<T> {
+    tree: OnceLock<T>,
     /// What was spent since the last change for want of a copy.
     spent: AtomicU32,
 }
 
-impl Clone for Mirror {
+impl<T> Default for Mirror<T> {
+    fn default() -> Self {
+        Self { tree: OnceLock::new(), spent: AtomicU32::new(0) }
+    }
+}
+
+impl<T> Clone for Mirror<T> {
     /// Made anew if it is needed.
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-impl Mirror {
+impl<T> Mirror<T> {
     /// For every change of the tree.
     #[inline]
     pub fn drop_copy(&mut self) {
@@ -37,16 +42,9 @@ impl Mirror {
         }
     }
 
-    /// The copy of a tree of so many leaves, once as much has been spent as it costs. `root` and `open` are for
-    /// [`WideTree::build`].
+    /// The copy of a tree of so many leaves, once as much has been spent as it costs.
     #[inline]
-    pub fn get<T: Copy>(
-        &self,
-        search: Search,
-        leaves: usize,
-        root: impl FnOnce() -> Part<T>,
-        open: impl FnMut(T) -> [Part<T>; 2],
-    ) -> Option<&WideTree> {
+    pub fn get(&self, search: Search, leaves: usize, make: impl FnOnce() -> T) -> Option<&T> {
         if let Some(tree) = self.tree.get() {
             return Some(tree);
         }
@@ -56,10 +54,6 @@ impl Mirror {
             self.spent.store(spent.saturating_add(search as u32), Ordering::Relaxed);
             return None;
         }
-        Some(self.tree.get_or_init(|| {
-            let mut tree = WideTree::default();
-            tree.build(root(), open);
-            tree
-        }))
+        Some(self.tree.get_or_init(make))
     }
 }

@@ -10,6 +10,7 @@ pub(crate) mod dynamic_tree;
 pub(crate) mod f32_box;
 mod hash;
 mod mirror;
+mod packed;
 mod pair_nodes;
 mod probe;
 mod proxy;

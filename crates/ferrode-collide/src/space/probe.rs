@@ -156,6 +156,32 @@ impl Probe {
         Some(lanes)
     }
 
+    /// The ray or path for a packed tree within `all`; `None` if this is neither, or one that single precision is too little
+    /// for.
+    #[inline]
+    pub(crate) fn bundle(&self, all: &Box32) -> Option<Bundle> {
+        if self.kind == Kind::Near {
+            return None;
+        }
+        let mut bundle = Bundle { origin: [[0.0; 2]; 3], inverse: [0.0; 3], near: [0; 3] };
+        let mut fits = true;
+        for i in 0..3 {
+            // Across an axis the ray is taken to go along it by next to nothing.
+            let inverse = self.inverse[i].clamp(-STEEPEST, STEEPEST);
+            let sign = if inverse < 0.0 { -1.0 } else { 1.0 };
+            let most = greater(f64::from(all.max[i]), -f64::from(all.min[i]));
+            // Rounding of the origin, of boxes and of differences, as a length.
+            let reach = self.origin[i].abs() + most + self.half[i];
+            // A box that moves is a ray among boxes that are larger by it.
+            let pad = (self.half[i] + reach * (2.0 * ROUNDING)) * sign;
+            bundle.origin[i] = [(self.origin[i] + pad) as f32, (self.origin[i] - pad) as f32];
+            bundle.inverse[i] = inverse as f32;
+            bundle.near[i] = usize::from(sign < 0.0);
+            fits &= (reach <= Bundle::REACH) & (inverse.abs() >= Bundle::FLATTEST);
+        }
+        fits.then_some(bundle)
+    }
+
     #[inline(always)]
     pub(crate) fn enter(&self, b: &Box32, limit: f64) -> Option<f64> {
         self.enter_bounds(b.min.map(f64::from), b.max.map(f64::from), limit)
@@ -234,6 +260,31 @@ impl RayLanes {
     #[inline(always)]
     pub fn limit(limit: f64) -> f32 {
         (limit * (1.0 + ROUNDING)) as f32
+    }
+}
+
+/// A ray or path for nodes of a packed tree.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bundle {
+    /// By axis: for where boxes are entered, and for where they are left.
+    pub origin: [[f32; 2]; 3],
+    pub inverse: [f32; 3],
+    /// Along each axis the side that the ray meets first.
+    pub near: [usize; 3],
+}
+
+impl Bundle {
+    /// Largest coordinate: times the steepest reciprocal it is a number.
+    const REACH: f64 = 1e8;
+    /// Least reciprocal: times the step of a node it is more than nothing.
+    const FLATTEST: f64 = 1e-12;
+    /// What is left is multiplied by it.
+    pub const WIDER: f32 = WIDER;
+
+    /// A limit in single precision, not below the one given.
+    #[inline(always)]
+    pub fn limit(limit: f64) -> f32 {
+        RayLanes::limit(limit)
     }
 }
 
