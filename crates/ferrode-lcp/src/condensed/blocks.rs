@@ -1,44 +1,59 @@
-//! Loops over rows that have whole blocks of four numbers, from any place on.
-//!
-//! All of a block is read before any of it is written, so that it is loaded and stored at once.
+//! Loops over numbers in whole blocks of four.
 
-use crate::kernel::sum4;
+use ferrode_math::simd::{Pair, Quad};
 
-/// The blocks of four of a slice from place `from` on, and what of it lies before them.
+/// The dot product.
 #[inline(always)]
-fn blocks(a: &[f64], from: usize) -> (&[f64], &[[f64; 4]]) {
-    let aligned = from.next_multiple_of(4).min(a.len());
-    (&a[from..aligned], a[aligned..].as_chunks().0)
+pub(super) fn dot_blocks<Q: Quad>(a: &[[f64; 4]], b: &[[f64; 4]]) -> f64 {
+    let mut sum = Q::splat(0.0);
+    for (a, b) in a.iter().zip(b) {
+        sum = sum + Q::load(a) * Q::load(b);
+    }
+    sum.fold().sum()
 }
 
-/// `y -= s a` from place `from` on; both are whole blocks of four.
+/// `y += s a`.
 #[inline(always)]
-pub(super) fn sub_scaled(y: &mut [f64], s: f64, a: &[f64], from: usize) {
-    let aligned = from.next_multiple_of(4).min(y.len());
-    let (y_head, y_rest) = y[from..].split_at_mut(aligned - from);
-    let (head, rest) = blocks(a, from);
-    for (y, a) in y_head.iter_mut().zip(head) {
-        *y -= s * a;
-    }
-    for (y, a) in y_rest.as_chunks_mut::<4>().0.iter_mut().zip(rest) {
-        // All read before any is written: one load, one store.
-        *y = [y[0] - s * a[0], y[1] - s * a[1], y[2] - s * a[2], y[3] - s * a[3]];
+pub(super) fn add_blocks<Q: Quad>(y: &mut [[f64; 4]], s: f64, a: &[[f64; 4]]) {
+    let s = Q::splat(s);
+    for (y, a) in y.iter_mut().zip(a) {
+        (Q::load(y) + s * Q::load(a)).store(y);
     }
 }
 
-/// The dot product from place `from` on; both are whole blocks of four.
+/// `y += s a`, and the dot product of `a` and `x`: what a row and a column of a symmetric matrix put in.
 #[inline(always)]
-pub(super) fn dot_from(a: &[f64], b: &[f64], from: usize) -> f64 {
-    let ((a_head, a_rest), (b_head, b_rest)) = (blocks(a, from), blocks(b, from));
-    let mut head = 0.0;
-    for (a, b) in a_head.iter().zip(b_head) {
-        head += a * b;
+pub(super) fn add_and_dot<Q: Quad>(y: &mut [f64], s: f64, a: &[f64], x: &[f64]) -> f64 {
+    let ((y_blocks, y_rest), (a_blocks, a_rest)) = (y.as_chunks_mut::<4>(), a.as_chunks::<4>());
+    let (x_blocks, x_rest) = x.as_chunks::<4>();
+    let (mut sum, scale) = (Q::splat(0.0), Q::splat(s));
+    for ((y, a), x) in y_blocks.iter_mut().zip(a_blocks).zip(x_blocks) {
+        let a = Q::load(a);
+        (Q::load(y) + scale * a).store(y);
+        sum = sum + a * Q::load(x);
     }
-    let mut s = [0.0; 4];
-    for (a, b) in a_rest.iter().zip(b_rest) {
+    let mut rest = 0.0;
+    for ((y, a), x) in y_rest.iter_mut().zip(a_rest).zip(x_rest) {
+        *y += s * a;
+        rest += a * x;
+    }
+    sum.fold().sum() + rest
+}
+
+/// The largest of the numbers that four slices of blocks give, by size; not a number if one is not.
+#[inline(always)]
+pub(super) fn largest(numbers: impl Iterator<Item = [f64; 4]>) -> f64 {
+    let (mut most, mut sum) = ([0.0f64; 4], [0.0f64; 4]);
+    for block in numbers {
         for l in 0..4 {
-            s[l] += a[l] * b[l];
+            let size = block[l].abs();
+            most[l] = if size > most[l] { size } else { most[l] };
+            sum[l] += size;
         }
     }
-    head + sum4(s)
+    let [a, b, c, d] = most;
+    let pair = [if b > a { b } else { a }, if d > c { d } else { c }];
+    let most = if pair[1] > pair[0] { pair[1] } else { pair[0] };
+    let sum = (sum[0] + sum[2]) + (sum[1] + sum[3]);
+    if sum.is_nan() { sum } else { most }
 }

@@ -1,86 +1,150 @@
 //! Elimination of the rows without bounds, four at a time.
 //!
-//! Each joint of a figure shares bodies with few others, so most of a row are zeros. They are left out by blocks: of four rows that are
-//! eliminated, only the blocks in which any of them holds something are looked at, and only the rows that stand in these blocks change.
+//! Each joint of a figure shares bodies with few others, so most of a row are zeros. They are left out by blocks of four numbers: each row has
+//! a set of the blocks that hold something. Of four rows that are eliminated only the blocks are looked at that any of them holds, and only the
+//! rows that stand in these blocks change.
 
-use super::SINGULAR;
+use super::{MOST_BLOCKS, SINGULAR};
+use ferrode_math::simd::Quad;
 
-/// Eliminates the rows from `start` to `end`, up to four of which the first is a multiple of four, from all `n` rows of a matrix whose
-/// upper triangle counts. The reciprocals of their pivots are added to `d`. `None` if a pivot vanishes.
+/// A matrix whose upper triangle counts, in rows of whole blocks, and for each row the set of the blocks that hold something. What lies left
+/// of the diagonal means nothing.
+pub(super) struct Blocks<'a> {
+    pub numbers: &'a mut [[f64; 4]],
+    pub held: &'a mut [u64],
+    /// Blocks of a row.
+    pub width: usize,
+}
+
+/// The numbers of blocks, rising.
+struct List {
+    numbers: [u8; MOST_BLOCKS],
+    count: usize,
+}
+
+impl List {
+    #[inline(always)]
+    fn of(mut set: u64) -> Self {
+        let mut list = Self { numbers: [0; MOST_BLOCKS], count: 0 };
+        while set != 0 {
+            list.numbers[list.count] = set.trailing_zeros() as u8;
+            list.count += 1;
+            set &= set - 1;
+        }
+        list
+    }
+
+    #[inline(always)]
+    fn blocks(&self) -> &[u8] {
+        &self.numbers[..self.count]
+    }
+}
+
+/// Eliminates the rows from `start` to `end`, up to four of which the first is a multiple of four, from all `n` rows. The reciprocals of
+/// their pivots are added to `d`; `scratch` is some memory. `None` if a pivot vanishes.
 #[inline(always)]
-pub(super) fn eliminate(
-    matrix: &mut [[f64; 4]],
-    blocks: usize,
+pub(super) fn eliminate<Q: Quad>(
+    matrix: &mut Blocks<'_>,
     (start, end, n): (usize, usize, usize),
     diagonal: &[f64],
     d: &mut Vec<f64>,
-    held: &mut Vec<u32>,
+    scratch: &mut Vec<[[f64; 4]; 8]>,
 ) -> Option<()> {
-    let (above, below) = matrix[start * blocks..n * blocks].split_at_mut((end - start) * blocks);
+    let width = matrix.width;
     let own = start / 4;
-    find_held(above, blocks, own, held);
+    let held = matrix.held[start..end].iter().fold(1 << own, |all, held| all | held) & (!0 << own);
+    let list = List::of(held);
+    let list = list.blocks();
+    let (above, below) = matrix.numbers[start * width..n * width].split_at_mut((end - start) * width);
+    let mut inverses = [0.0; 4];
     for j in 0..end - start {
-        let (row, rest) = above[j * blocks..].split_at_mut(blocks);
+        let (row, rest) = above[j * width..].split_at_mut(width);
         let pivot = row[own][j];
         if pivot.is_nan() || pivot <= SINGULAR * diagonal[start + j] {
             return None;
         }
-        let inverse = 1.0 / pivot;
-        d.push(inverse);
-        for (i, target) in (j + 1..end - start).zip(rest.chunks_exact_mut(blocks)) {
-            let f = row[own][i] * inverse;
+        inverses[j] = 1.0 / pivot;
+        d.push(inverses[j]);
+        for (i, target) in (j + 1..end - start).zip(rest.chunks_exact_mut(width)) {
+            let f = row[own][i] * inverses[j];
             if f != 0.0 {
-                for b in held.iter().map(|b| *b as usize) {
-                    let (y, a) = (target[b], row[b]);
-                    target[b] = [y[0] - f * a[0], y[1] - f * a[1], y[2] - f * a[2], y[3] - f * a[3]];
+                let f = Q::splat(-f);
+                for b in list.iter().map(|b| usize::from(*b)) {
+                    if let (Some(y), Some(a)) = (target.get_mut(b), row.get(b)) {
+                        (Q::load(y) + f * Q::load(a)).store(y);
+                    }
                 }
             }
         }
     }
-    let row = |k: usize| &above[k.min(end - start - 1) * blocks..][..blocks];
-    let rows = [row(0), row(1), row(2), row(3)];
-    let inverse = |k: usize| d.get(start + k).copied().unwrap_or(0.0);
-    let inverses = [inverse(0), inverse(1), inverse(2), inverse(3)];
-    for (at, b) in held.iter().enumerate() {
-        let first = 4 * *b as usize;
-        let held = &held[at..];
-        let a = [rows[0][*b as usize], rows[1][*b as usize], rows[2][*b as usize], rows[3][*b as usize]];
-        for i in first.max(end)..n.min(first + 4) {
-            let factor = |k: usize| a[k][i & 3] * inverses[k];
-            let f = [factor(0), factor(1), factor(2), factor(3)];
-            if f != [0.0; 4] {
-                sub_four(&mut below[(i - end) * blocks..][..blocks], f, rows, held);
+    // The four rows' blocks side by side, and those over the pivots, with the other sign.
+    scratch.clear();
+    scratch.resize(list.len(), [[0.0; 4]; 8]);
+    for (k, row) in above.chunks_exact(width).enumerate() {
+        let inverse = Q::splat(-inverses[k]);
+        for (packed, b) in scratch.iter_mut().zip(list) {
+            let block = Q::load(&row[usize::from(*b)]);
+            block.store(&mut packed[k]);
+            (block * inverse).store(&mut packed[4 + k]);
+        }
+    }
+    for (at, b) in list.iter().enumerate() {
+        let first = 4 * usize::from(*b);
+        let (scratch, list) = (&scratch[at..], &list[at..]);
+        let [_, _, _, _, s0, s1, s2, s3] = &scratch[0];
+        let (from, to) = (first.max(end), n.min(first + 4));
+        let held = held & (!0 << *b);
+        for i in (from..to).step_by(2) {
+            // With one row left the second is that behind it, or itself, and gets nothing.
+            let f = |i: usize| {
+                let l = i & 3;
+                [s0[l], s1[l], s2[l], s3[l]]
+            };
+            let (f0, f1) = (f(i), if i + 1 < to { f(i + 1) } else { [0.0; 4] });
+            if (f0, f1) == ([0.0; 4], [0.0; 4]) {
+                continue;
+            }
+            let (row, next) = below[(i - end) * width..].split_at_mut(width);
+            match next.get_mut(..width) {
+                Some(next) if f1 != [0.0; 4] => {
+                    matrix.held[i] |= held;
+                    matrix.held[i + 1] |= held;
+                    add_four_to_two::<Q>([row, next], [f0, f1], scratch, list);
+                }
+                _ => {
+                    matrix.held[i] |= held;
+                    add_four::<Q>(row, f0, scratch, list);
+                }
             }
         }
     }
     Some(())
 }
 
-/// Lists the blocks from `from` on in which any of the rows holds something.
+/// `y += s₀ a₀ + s₁ a₁ + s₂ a₂ + s₃ a₃`, one after the other, in some blocks.
 #[inline(always)]
-fn find_held(rows: &[[f64; 4]], blocks: usize, from: usize, held: &mut Vec<u32>) {
-    held.clear();
-    for b in from..blocks {
-        let mut bits = 0;
-        for row in rows.chunks_exact(blocks) {
-            bits |= row[b].iter().fold(0, |bits, v| bits | v.to_bits());
-        }
-        // The sign bit is left out: minus zero is zero.
-        if bits << 1 != 0 {
-            held.push(b as u32);
+fn add_four<Q: Quad>(y: &mut [[f64; 4]], s: [f64; 4], a: &[[[f64; 4]; 8]], list: &[u8]) {
+    let (s0, s1, s2, s3) = (Q::splat(s[0]), Q::splat(s[1]), Q::splat(s[2]), Q::splat(s[3]));
+    for (a, b) in a.iter().zip(list) {
+        if let Some(y) = y.get_mut(usize::from(*b)) {
+            let sum = Q::load(y) + s0 * Q::load(&a[0]) + s1 * Q::load(&a[1]);
+            (sum + s2 * Q::load(&a[2]) + s3 * Q::load(&a[3])).store(y);
         }
     }
 }
 
-/// `y -= s₀ a₀ + s₁ a₁ + s₂ a₂ + s₃ a₃`, one after the other, in some blocks.
+/// The same for two rows.
 #[inline(always)]
-fn sub_four(y: &mut [[f64; 4]], s: [f64; 4], a: [&[[f64; 4]]; 4], held: &[u32]) {
-    let n = y.len();
-    let (a0, a1, a2, a3) = (&a[0][..n], &a[1][..n], &a[2][..n], &a[3][..n]);
-    for b in held {
-        let b = *b as usize;
-        let (y, a0, a1, a2, a3) = (&mut y[b], &a0[b], &a1[b], &a2[b], &a3[b]);
-        let l = |l: usize| (((y[l] - s[0] * a0[l]) - s[1] * a1[l]) - s[2] * a2[l]) - s[3] * a3[l];
-        *y = [l(0), l(1), l(2), l(3)];
+fn add_four_to_two<Q: Quad>(y: [&mut [[f64; 4]]; 2], s: [[f64; 4]; 2], a: &[[[f64; 4]; 8]], list: &[u8]) {
+    let [y, z] = y;
+    let [s, t] = s;
+    let (s0, s1, s2, s3) = (Q::splat(s[0]), Q::splat(s[1]), Q::splat(s[2]), Q::splat(s[3]));
+    let (t0, t1, t2, t3) = (Q::splat(t[0]), Q::splat(t[1]), Q::splat(t[2]), Q::splat(t[3]));
+    for (a, b) in a.iter().zip(list) {
+        if let (Some(y), Some(z)) = (y.get_mut(usize::from(*b)), z.get_mut(usize::from(*b))) {
+            let (a0, a1, a2, a3) = (Q::load(&a[0]), Q::load(&a[1]), Q::load(&a[2]), Q::load(&a[3]));
+            (Q::load(y) + s0 * a0 + s1 * a1 + s2 * a2 + s3 * a3).store(y);
+            (Q::load(z) + t0 * a0 + t1 * a1 + t2 * a2 + t3 * a3).store(z);
+        }
     }
 }

@@ -3,13 +3,16 @@
 //! With the free rows C and the others N the tableau `T` of the symmetric matrix `S` is
 //!
 //! ```text
-//!     T_CC = S_CC^-1          T_CN = -S_CC^-1 S_CN
+//!     T_CC = -S_CC^-1         T_CN = S_CC^-1 S_CN
 //!     T_NC = S_NC S_CC^-1     T_NN = S_NN - S_NC S_CC^-1 S_CN
 //! ```
 //!
-//! Driving the force of a row i of N by one moves the forces of C by `T_Ci` and the slacks of N by `T_Ni`. `T` is symmetric but for the
-//! sign of `T_CN`, so row i has them too, next to each other. A row that changes between C and N costs one pass over the tableau (A. W. Tucker's principal
-//! pivot transform; M. J. Tsatsomeros, "Principal pivot transforms: properties and applications", 2000).
+//! Driving the force of a row i of N by one moves the forces of C by `-T_Ci` and the slacks of N by `T_Ni`. `T` is symmetric, so half of it is
+//! kept. A row that changes between C and N costs one pass over that (J. H. Goodnight, "A tutorial on the SWEEP operator", 1979; A. W. Tucker's
+//! principal pivot transform).
+
+use super::blocks::add_blocks;
+use ferrode_math::simd::Quad;
 
 /// Friction hangs on no row.
 pub(super) const NO_NORMAL: u32 = u32::MAX;
@@ -76,21 +79,19 @@ pub(super) struct Tableau {
     pub rows: Vec<Place>,
     /// Changes of sets in the last solve.
     pub pivots: u32,
-    t: Vec<f64>,
+    /// The upper triangle, in rows of whole blocks; what lies left of the diagonal means nothing.
+    t: Vec<[f64; 4]>,
     /// Forces of C, slacks of all others; the range in which each may be until its row has to change sets.
-    z: Vec<f64>,
+    z: Vec<[f64; 4]>,
     floor: Vec<f64>,
     ceiling: Vec<f64>,
-    /// -1 for rows of C, 1 for others: what makes a row of the tableau a column.
-    sign: Vec<f64>,
-    /// How `z` changes while a row is driven, and how far each lets it go; the pivot row.
-    rate: Vec<f64>,
-    length: Vec<f64>,
-}
-
-/// The distance between the starts of two rows of a matrix with `k` columns.
-pub(super) fn stride(k: usize) -> usize {
-    k.next_multiple_of(4)
+    /// -1 for rows of C, 1 for others: which way driving moves `z`.
+    sign: Vec<[f64; 4]>,
+    /// How `z` changes while a row is driven.
+    rate: Vec<[f64; 4]>,
+    /// A row of the tableau, whole; the same over its diagonal.
+    row: Vec<[f64; 4]>,
+    scaled: Vec<[f64; 4]>,
 }
 
 /// What ends a drive's step.
@@ -105,22 +106,27 @@ impl Tableau {
     /// Finds the states of all rows. The upper triangle of `S` comes in rows, each from its diagonal on, and behind it the row's
     /// entry of `q`. `None` if a step has no length, or it takes too many.
     #[inline(always)]
-    pub fn solve<'a>(&mut self, k: usize, upper: impl Iterator<Item = &'a [f64]>) -> Option<()> {
-        let stride = stride(k);
+    pub fn solve<'a, Q: Quad>(&mut self, k: usize, upper: impl Iterator<Item = &'a [f64]>) -> Option<()> {
+        let width = k.div_ceil(4);
         self.pivots = 0;
-        refill(&mut self.t, k * stride, 0.0);
-        refill(&mut self.z, stride, 0.0);
-        refill(&mut self.sign, stride, 1.0);
-        refill(&mut self.floor, stride, f64::NEG_INFINITY);
-        refill(&mut self.ceiling, stride, f64::INFINITY);
-        refill(&mut self.rate, stride, 0.0);
-        refill(&mut self.length, stride, 0.0);
-        for (i, row) in upper.enumerate() {
+        for v in [&mut self.z, &mut self.rate, &mut self.row, &mut self.scaled] {
+            refill(v, width, [0.0; 4]);
+        }
+        refill(&mut self.sign, width, [1.0; 4]);
+        refill(&mut self.floor, k, f64::NEG_INFINITY);
+        refill(&mut self.ceiling, k, f64::INFINITY);
+        // Four rows are worked on at a time.
+        if self.t.len() < 4 * width * width {
+            self.t.resize(4 * width * width, [0.0; 4]);
+        }
+        let numbers = self.t.as_flattened_mut().chunks_exact_mut((4 * width).max(1));
+        for (i, (row, t)) in upper.zip(numbers).enumerate() {
             let (row, q) = row.split_at(k - i);
-            self.z[i] = -q[0];
-            self.t[i * stride + i..i * stride + k].copy_from_slice(row);
-            for (j, s) in row.iter().enumerate().skip(1) {
-                self.t[(i + j) * stride + i] = *s;
+            self.z.as_flattened_mut()[i] = -q[0];
+            // Old numbers behind the last column might not be finite.
+            t[4 * width - 4..].fill(0.0);
+            for (t, s) in t[i..].iter_mut().zip(row) {
+                *t = *s;
             }
         }
         let most = 50 + 20 * k as u32;
@@ -134,16 +140,16 @@ impl Tableau {
             if lo == 0.0 && hi == 0.0 {
                 continue;
             }
-            let w = self.z[at];
+            let w = self.z.as_flattened()[at];
             if lo == 0.0 && w >= 0.0 {
                 self.put(at, State::Lower, w);
             } else if hi == 0.0 && w <= 0.0 {
                 self.put(at, State::Upper, w);
             } else if w == 0.0 {
-                self.pivot(at, stride)?;
+                self.pivot::<Q>(at)?;
                 self.put(at, State::Free, 0.0);
             } else {
-                self.drive(at, stride, most)?;
+                self.drive::<Q>(at, most)?;
             }
         }
         Some(())
@@ -154,8 +160,8 @@ impl Tableau {
     fn put(&mut self, row: usize, state: State, z: f64) {
         let place = &mut self.rows[row];
         place.state = state;
-        self.z[row] = z;
-        self.sign[row] = if state == State::Free { -1.0 } else { 1.0 };
+        self.z.as_flattened_mut()[row] = z;
+        self.sign.as_flattened_mut()[row] = if state == State::Free { -1.0 } else { 1.0 };
         (self.floor[row], self.ceiling[row]) = match state {
             State::Free => (place.lo, place.hi),
             State::Lower => (0.0, f64::INFINITY),
@@ -168,8 +174,11 @@ impl Tableau {
     fn freeze_friction(&mut self, at: usize) {
         for row in at..self.rows.len() {
             let Some(normal) = self.rows.get(self.rows[row].normal as usize) else { continue };
-            let force =
-                if normal.is_free() { self.z[self.rows[row].normal as usize] } else { normal.bound() };
+            let force = if normal.is_free() {
+                self.z.as_flattened()[self.rows[row].normal as usize]
+            } else {
+                normal.bound()
+            };
             let place = &mut self.rows[row];
             let bound = if force == 0.0 { 0.0 } else { (place.hi * force).abs() };
             (place.lo, place.hi) = (0.0 - bound, bound);
@@ -178,49 +187,44 @@ impl Tableau {
 
     /// Drives a row until its slack vanishes or its force is at a bound.
     #[inline(always)]
-    fn drive(&mut self, at: usize, stride: usize, most: u32) -> Option<()> {
+    fn drive<Q: Quad>(&mut self, at: usize, most: u32) -> Option<()> {
         let Place { lo, hi, .. } = self.rows[at];
         let mut x = 0.0;
         loop {
-            let s = if self.z[at] <= 0.0 { 1.0 } else { -1.0 };
-            self.measure_lengths(at, s, stride);
+            let z = self.z.as_flattened()[at];
+            let s = if z <= 0.0 { 1.0 } else { -1.0 };
+            self.find_rates::<Q>(at, s);
             // The slack has the other sign than the drive, and the diagonal is positive.
-            let (mut step, mut event) = (-self.z[at] / self.rate[at], Event::Clamp);
+            let (mut step, mut event) = (-z / self.rate.as_flattened()[at], Event::Clamp);
             let own = if s > 0.0 { hi - x } else { x - lo };
             if own < step {
                 (step, event) = (own, Event::Bound(if s > 0.0 { State::Upper } else { State::Lower }));
             }
-            // Of equal lengths the first.
-            for (row, length) in self.length[..at].iter().enumerate() {
-                if *length < step {
-                    (step, event) = (*length, Event::Change(row));
-                }
+            if let Some((row, length)) = self.first_to_change(at, step) {
+                (step, event) = (length, Event::Change(row));
             }
             let usable = step > 0.0 && step.is_finite();
             if !usable || self.pivots >= most {
                 return None;
             }
-            let rate = self.rate.as_chunks::<4>().0;
-            for (z, rate) in self.z.as_chunks_mut::<4>().0.iter_mut().zip(rate) {
-                let l = |l: usize| z[l] + step * rate[l];
-                *z = [l(0), l(1), l(2), l(3)];
-            }
+            add_blocks::<Q>(&mut self.z, step, &self.rate);
             x += step * s;
             match event {
                 Event::Clamp => {
-                    self.pivot(at, stride)?;
+                    self.pivot::<Q>(at)?;
                     self.put(at, State::Free, x);
                     return Some(());
                 }
                 Event::Bound(state) => {
-                    let w = self.z[at];
+                    let w = self.z.as_flattened()[at];
                     self.put(at, state, w);
                     return Some(());
                 }
                 Event::Change(row) => {
-                    self.pivot(row, stride)?;
+                    let rate = self.rate.as_flattened()[row];
+                    self.pivot::<Q>(row)?;
                     if self.rows[row].is_free() {
-                        let state = if self.rate[row] < 0.0 { State::Lower } else { State::Upper };
+                        let state = if rate < 0.0 { State::Lower } else { State::Upper };
                         self.put(row, state, 0.0);
                     } else {
                         let force = self.rows[row].bound();
@@ -231,63 +235,97 @@ impl Tableau {
         }
     }
 
-    /// Finds how forces and slacks change while a row is driven, and how far each of them lets it go.
+    /// Finds how forces and slacks change while a row is driven.
     #[inline(always)]
-    fn measure_lengths(&mut self, at: usize, s: f64, stride: usize) {
-        let row = self.t[at * stride..][..stride].as_chunks::<4>().0;
-        let n = row.len();
-        let (z, sign) = (&self.z.as_chunks::<4>().0[..n], &self.sign.as_chunks::<4>().0[..n]);
-        let (floor, ceiling) = (&self.floor.as_chunks::<4>().0[..n], &self.ceiling.as_chunks::<4>().0[..n]);
-        let rate = &mut self.rate.as_chunks_mut::<4>().0[..n];
-        let length = &mut self.length.as_chunks_mut::<4>().0[..n];
-        for i in 0..n {
-            let v = |l: usize| s * (sign[i][l] * row[i][l]);
-            let v = [v(0), v(1), v(2), v(3)];
-            let far = |l: usize| far(v[l], z[i][l], floor[i][l], ceiling[i][l]);
-            (rate[i], length[i]) = (v, [far(0), far(1), far(2), far(3)]);
+    fn find_rates<Q: Quad>(&mut self, at: usize, s: f64) {
+        self.copy_row(at);
+        let s = Q::splat(s);
+        for ((rate, sign), row) in self.rate.iter_mut().zip(&self.sign).zip(&self.row) {
+            (s * (Q::load(sign) * Q::load(row))).store(rate);
         }
     }
 
-    /// Moves a row from N to C or back. `None` if its diagonal is not positive.
+    /// The row before `at` that first leaves its range, and how long the step is until then; `None` if none does within `step`. Of
+    /// equal lengths the first.
     #[inline(always)]
-    fn pivot(&mut self, p: usize, stride: usize) -> Option<()> {
+    fn first_to_change(&self, at: usize, mut step: f64) -> Option<(usize, f64)> {
+        let (z, rate) = (&self.z.as_flattened()[..at], &self.rate.as_flattened()[..at]);
+        let (floor, ceiling) = (&self.floor[..at], &self.ceiling[..at]);
+        let mut first = None;
+        for row in 0..at {
+            let v = rate[row];
+            let way = (if v < 0.0 { floor[row] } else { ceiling[row] }) - z[row];
+            // Few rows are near the end of their range: the others need no division.
+            if (if v < 0.0 { -way } else { way }) < step * v.abs() && v != 0.0 {
+                let length = way / v;
+                if length < step {
+                    (step, first) = (length, Some((row, length)));
+                }
+            }
+        }
+        first
+    }
+
+    /// Copies a whole row, of which the part left of the diagonal is a column.
+    #[inline(always)]
+    fn copy_row(&mut self, p: usize) {
+        let Self { t, row, .. } = self;
+        let width = row.len();
+        row[p / 4..].copy_from_slice(&t[p * width + p / 4..][..width - p / 4]);
+        for (row, t) in row.as_flattened_mut()[..p].iter_mut().zip(t.chunks_exact(width)) {
+            *row = t[p / 4][p & 3];
+        }
+    }
+
+    /// Moves a row from N to C or back. `None` if its diagonal has not the sign that it must have.
+    #[inline(always)]
+    fn pivot<Q: Quad>(&mut self, p: usize) -> Option<()> {
         self.pivots += 1;
-        let diagonal = self.t[p * stride + p];
-        if diagonal.is_nan() || diagonal <= 0.0 {
+        self.copy_row(p);
+        let Self { t, row, scaled, rows, .. } = self;
+        let width = row.len();
+        let diagonal = row.as_flattened()[p];
+        // What becomes of the row over its diagonal.
+        let sign = if rows[p].is_free() { -1.0 } else { 1.0 };
+        let size = sign * diagonal;
+        if size.is_nan() || size <= 0.0 {
             return None;
         }
         let inverse = 1.0 / diagonal;
-        // Row p over the diagonal; row p itself becomes minus that.
-        for (d, t) in self.length.iter_mut().zip(&mut self.t[p * stride..][..stride]) {
-            *d = *t * inverse;
-            *t = -*d;
+        let factor = Q::splat(inverse);
+        for (scaled, row) in scaled.iter_mut().zip(&*row) {
+            (factor * Q::load(row)).store(scaled);
         }
-        self.t[p * stride + p] = inverse;
-        let (before, rest) = self.t.split_at_mut(p * stride);
-        for row in before.chunks_exact_mut(stride).chain(rest[stride..].chunks_exact_mut(stride)) {
-            let f = row[p];
-            if f != 0.0 {
-                let d = self.length.as_chunks::<4>().0;
-                for (t, d) in row.as_chunks_mut::<4>().0.iter_mut().zip(d) {
-                    // All read before any is written: one load, one store.
-                    *t = [t[0] - f * d[0], t[1] - f * d[1], t[2] - f * d[2], t[3] - f * d[3]];
-                }
-                row[p] = f * inverse;
+        // Row p changes too, but is written anew below.
+        for (block, (rows, f)) in t.chunks_exact_mut(4 * width).zip(row.iter()).enumerate() {
+            let (r0, rest) = rows.split_at_mut(width);
+            let (r1, rest) = rest.split_at_mut(width);
+            let (r2, r3) = rest.split_at_mut(width);
+            let blocks = r0[block..].iter_mut().zip(&mut r1[block..]).zip(&mut r2[block..]);
+            let f = [Q::splat(-f[0]), Q::splat(-f[1]), Q::splat(-f[2]), Q::splat(-f[3])];
+            for ((((r0, r1), r2), r3), scaled) in blocks.zip(&mut r3[block..]).zip(&scaled[block..]) {
+                let scaled = Q::load(scaled);
+                (Q::load(r0) + f[0] * scaled).store(r0);
+                (Q::load(r1) + f[1] * scaled).store(r1);
+                (Q::load(r2) + f[2] * scaled).store(r2);
+                (Q::load(r3) + f[3] * scaled).store(r3);
             }
         }
+        let sign = Q::splat(sign);
+        for scaled in scaled.iter_mut() {
+            (sign * Q::load(scaled)).store(scaled);
+        }
+        for (t, scaled) in t.chunks_exact_mut(width).zip(&scaled.as_flattened()[..p]) {
+            t[p / 4][p & 3] = *scaled;
+        }
+        let own = &mut t[p * width + p / 4..][..width - p / 4];
+        own.copy_from_slice(&scaled[p / 4..]);
+        own[0][p & 3] = -inverse;
         Some(())
     }
 }
 
-/// How long what is at `z` and changes at the rate `v` stays within its range.
-#[inline(always)]
-fn far(v: f64, z: f64, floor: f64, ceiling: f64) -> f64 {
-    let way = (if v < 0.0 { floor } else { ceiling }) - z;
-    let far = way / v;
-    if v == 0.0 { f64::INFINITY } else { far }
-}
-
-fn refill(v: &mut Vec<f64>, n: usize, value: f64) {
+fn refill<T: Copy>(v: &mut Vec<T>, n: usize, value: T) {
     v.clear();
     v.resize(n, value);
 }
