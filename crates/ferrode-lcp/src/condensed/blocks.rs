@@ -40,7 +40,7 @@ pub(super) fn add_and_dot<Q: Quad>(y: &mut [f64], s: f64, a: &[f64], x: &[f64]) 
     sum.fold().sum() + rest
 }
 
-/// The largest of the numbers that four slices of blocks give, by size; not a number if one is not.
+/// The largest of some blocks' numbers, by size; not a number if one is not.
 #[inline(always)]
 pub(super) fn largest(numbers: impl Iterator<Item = [f64; 4]>) -> f64 {
     let (mut most, mut sum) = ([0.0f64; 4], [0.0f64; 4]);

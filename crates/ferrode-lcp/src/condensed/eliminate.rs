@@ -95,7 +95,7 @@ pub(super) fn eliminate<Q: Quad>(
         let (from, to) = (first.max(end), n.min(first + 4));
         let held = held & (!0 << *b);
         for i in (from..to).step_by(2) {
-            // With one row left the second is that behind it, or itself, and gets nothing.
+            // What is added of the four rows, two rows at a time.
             let f = |i: usize| {
                 let l = i & 3;
                 [s0[l], s1[l], s2[l], s3[l]]

@@ -76,9 +76,9 @@ pub(super) fn by_degree(p: &BoxedLcp<'_>, eliminated: &[bool], order: &mut Vec<u
             runs[other].degree = degree(&runs, other);
         }
         let Run { start, len, .. } = runs[run];
-        for r in start..start + len {
-            if eliminated[r] {
-                order.push(r as u32);
+        for (eliminated, row) in eliminated[start..start + len].iter().zip(start as u32..) {
+            if *eliminated {
+                order.push(row);
             }
         }
     }
