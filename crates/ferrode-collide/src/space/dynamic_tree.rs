@@ -452,7 +452,7 @@ impl DynamicTree {
         let bundle = probe.bundle(all).filter(|_| self.count < PackedTree::MOST);
         if let Some(bundle) = &bundle {
             if let Some(packed) = self.packed() {
-                packed.seek(bundle, limit, found);
+                packed.seek(bundle, limit, |payload, _, limit| found(payload, limit));
                 return;
             }
         } else if let Some(wide) = self.wide(Search::Seek) {

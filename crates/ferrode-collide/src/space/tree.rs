@@ -3,6 +3,7 @@
 mod refit;
 
 use super::f32_box::Box32;
+use super::packed::PackedTree;
 use super::probe::Probe;
 use super::wide::{Part, WideTree};
 use ferrode_math::Aabb;
@@ -13,13 +14,24 @@ const LEAF: usize = 4;
 const BINS: usize = 16;
 
 /// A tree over bounded boxes, numbered as they were given; built once, by the surface area heuristic (Wald, *On fast
-/// construction of SAH-based bounding volume hierarchies*, 2007), four boxes to a node. Boxes are rounded outwards to single
-/// precision; with its list of items the tree takes 20 to 40 bytes a box.
+/// construction of SAH-based bounding volume hierarchies*, 2007), four boxes to a node, and for rays seven. Boxes are rounded outwards to
+/// single precision, or to bytes; with its list of items the tree takes 30 to 50 bytes a box.
 #[derive(Clone, Debug, Default)]
 pub struct AabbTree {
     /// Leaves are parts of the list of items: the first, and how many.
     nodes: WideTree,
+    /// The same leaves, for rays and what moves.
+    packed: PackedTree,
     items: Vec<u32>,
+}
+
+/// A part of the list of items while the tree is being built.
+struct Stretch {
+    bounds: Box32,
+    start: usize,
+    end: usize,
+    /// The first of its two halves, which follow one another; zero for a leaf.
+    halves: usize,
 }
 
 impl AabbTree {
@@ -31,15 +43,28 @@ impl AabbTree {
         if items.is_empty() {
             return tree;
         }
-        let part = |items: &[(u32, Box32)], start: usize, end: usize| Part {
-            bounds: items[start..end].iter().fold(Box32::EMPTY, |b, i| b.union(&i.1)),
-            leaf: (end - start <= LEAF).then_some((start as u32, (end - start) as u32)),
-            of: (start, end),
+        let stretch = |items: &[(u32, Box32)], start: usize, end: usize| {
+            let bounds = items[start..end].iter().fold(Box32::EMPTY, |all, i| all.union(&i.1));
+            Stretch { bounds, start, end, halves: 0 }
         };
-        tree.nodes.build(part(&items, 0, items.len()), |(start, end)| {
-            let middle = start + split(&mut items[start..end]);
-            [part(&items, start, middle), part(&items, middle, end)]
-        });
+        let mut list = vec![stretch(&items, 0, items.len())];
+        let mut k = 0;
+        while k < list.len() {
+            let Stretch { start, end, .. } = list[k];
+            if end - start > LEAF {
+                list[k].halves = list.len();
+                let middle = start + split(&mut items[start..end]);
+                list.extend([stretch(&items, start, middle), stretch(&items, middle, end)]);
+            }
+            k += 1;
+        }
+        let part = |k: usize| {
+            let &Stretch { bounds, start, end, halves } = &list[k];
+            Part { bounds, leaf: (halves == 0).then_some((start as u32, (end - start) as u32)), of: k }
+        };
+        let open = |k: usize| [0, 1].map(|h| part(list[k].halves + h));
+        tree.nodes.build(part(0), open);
+        tree.packed = PackedTree::build(part(0), open);
         // Not in the memory of the larger ones, where it would be collected.
         tree.items = items.iter().map(|i| i.0).collect();
         tree.nodes.shrink_to_fit();
@@ -48,7 +73,7 @@ impl AabbTree {
 
     /// Bytes that the tree takes.
     pub fn size(&self) -> usize {
-        self.nodes.size() + self.items.capacity() * size_of::<u32>()
+        self.nodes.size() + self.packed.size() + self.items.capacity() * size_of::<u32>()
     }
 
     fn items(&self, first: u32, count: u32) -> &[u32] {
@@ -67,9 +92,13 @@ impl AabbTree {
     /// ones first as far as their boxes tell. `found` may lower the limit.
     #[inline]
     pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
-        self.nodes.seek(probe, limit, |first, count, limit| {
+        let mut found = |first, count, limit: &mut f64| {
             self.items(first, count).iter().for_each(|&item| found(item, limit));
-        });
+        };
+        match probe.bundle(self.packed.bounds()).filter(|_| self.items.len() < PackedTree::MOST) {
+            Some(bundle) => self.packed.seek(&bundle, limit, found),
+            None => self.nodes.seek(probe, limit, &mut found),
+        }
     }
 }
 

@@ -92,14 +92,14 @@ proptest! {
                     let nearest = missing.iter().filter_map(|&i| met(i)).filter(|at| *at <= most);
                     let nearest = nearest.min_by(f64::total_cmp);
                     let mut visits = vec![0; count];
-                    tree.seek(&bundle, &mut { most }, |i, _| {
+                    tree.seek(&bundle, &mut { most }, |i, _, _| {
                         missing.retain(|&m| m != i);
                         visits[i as usize] += 1;
                     });
                     prop_assert!(missing.is_empty(), "{missing:?} {probe:?} {bundle:?} {most}");
                     prop_assert!(visits.iter().all(|&n| n <= 1));
                     let (mut limit, mut best) = (most, None);
-                    tree.seek(&bundle, &mut limit, |i, limit| {
+                    tree.seek(&bundle, &mut limit, |i, _, limit| {
                         if let Some(at) = met(i).filter(|at| at <= limit) {
                             (*limit, best) = (at, Some(at));
                         }

@@ -9,17 +9,20 @@ impl AabbTree {
     /// Linear in the number of items. A tree whose items have moved far from their neighbours finds the same items, but
     /// looks at more; [`AabbTree::build`] it anew then.
     pub fn refit(&mut self, around: impl Fn(u32) -> Aabb) {
-        let Self { nodes, items } = self;
-        nodes.refit(|first, count| {
+        let Self { nodes, packed, items } = self;
+        let leaf = |first, count| {
             let items = items[first as usize..(first + count) as usize].iter();
             Box32::around(&items.fold(Aabb::EMPTY, |all, &item| all.union(&around(item))))
-        });
+        };
+        nodes.refit(leaf);
+        packed.refit(leaf);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::space::Probe;
     use ferrode_math::Vec3;
 
     #[test]
@@ -48,6 +51,20 @@ mod tests {
                     found
                 };
                 assert_eq!(hits(&moved), hits(&fresh));
+                // Rays, one of them too far away for the packed tree.
+                let from = at(probe * 7, 0.1).center() - Vec3::X * if probe == 39 { 1e9 } else { 2.0 };
+                let ray = Probe::ray(from, at(probe, 0.3).center() - from);
+                let met = |tree: &AabbTree| {
+                    let mut found = Vec::new();
+                    tree.seek(&ray, &mut 2.0, |i, _| found.push(i));
+                    found.retain(|&i| ray.enter_aabb(&at(i, 0.3), 2.0).is_some());
+                    found.sort_unstable();
+                    found
+                };
+                let all: Vec<u32> =
+                    (0..count).filter(|&i| ray.enter_aabb(&at(i, 0.3), 2.0).is_some()).collect();
+                assert_eq!(met(&moved), all);
+                assert_eq!(met(&fresh), all);
             }
         }
     }
