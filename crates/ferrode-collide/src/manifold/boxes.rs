@@ -4,7 +4,7 @@
 //! of the boxes' size. (Gottschalk, Lin and Manocha, *OBBTree*, 1996, for the axes; Sutherland and Hodgman, *Reentrant
 //! polygon clipping*, 1974, against four sides that are parallel to coordinate axes.)
 
-use super::{Axis, MANIFOLD_POINTS, Manifold, ManifoldPoint, Vec3f, turn};
+use super::{Axis, Favours, MANIFOLD_POINTS, Manifold, ManifoldPoint, Vec3f, turn};
 use crate::{Cuboid, Frame};
 
 pub(super) enum Answer {
@@ -167,8 +167,10 @@ fn search(pair: &Pair, fa: &Frame, fb: &Frame, margin: f32, axis: &mut Axis, out
     let (sa, sb) = (least(&pair.ha), least(&pair.hb));
     let prefer = PREFER * if sa < sb { sa } else { sb };
     // The best face; among near equals the last one, then the first.
-    let mut best = (f32::NEG_INFINITY, 0);
+    let first = if axis.favours == Favours::B { 3 } else { 0 };
+    let mut best = (f32::NEG_INFINITY, first);
     for k in 0..6 {
+        let k = if k + first < 6 { k + first } else { k + first - 6 };
         let gap = if k < 3 { pair.face_a(k) } else { pair.face_b(k - 3) };
         if gap > margin {
             axis.number = k as u8 + 1;
@@ -182,7 +184,7 @@ fn search(pair: &Pair, fa: &Frame, fb: &Frame, margin: f32, axis: &mut Axis, out
         } else {
             gap > best.0 + prefer
         };
-        if k == 0 || wins {
+        if k == first || wins {
             best = (gap, k);
         }
     }

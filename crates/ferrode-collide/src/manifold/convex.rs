@@ -1,7 +1,7 @@
 //! Two convex bodies: how they touch by GJK and EPA, then all points by clipping the features that face each other.
 
 use super::patch::{Patch, Spot};
-use super::{Axis, Touching};
+use super::{Axis, Favours, Touching};
 use crate::narrow::convex::{Touch, touch_within};
 use crate::narrow::manifold::Feature;
 use crate::narrow::support::{Body, Core};
@@ -48,7 +48,7 @@ pub(super) fn pair(
     match touch_within(&a, &b, margin, guess) {
         Ok(touch) => {
             axis.set_direction(touch.normal);
-            add_points(&a, &b, &touch, margin, patch);
+            add_points(&a, &b, &touch, margin, axis.favours, patch);
             Touching::Yes
         }
         Err(by) => Touching::Apart(by),
@@ -153,7 +153,14 @@ pub(super) fn feature(body: &Body<'_>, d: Vec3) -> Feature {
 ///
 /// The reference is the face along which they overlap least, if that is no more than a hair beyond the least of all
 /// directions: a body on a face has a whole patch, whichever of nearly equal directions GJK ended with.
-pub(super) fn add_points(a: &Body<'_>, b: &Body<'_>, t: &Touch, margin: f64, patch: &mut Patch) {
+pub(super) fn add_points(
+    a: &Body<'_>,
+    b: &Body<'_>,
+    t: &Touch,
+    margin: f64,
+    favours: Favours,
+    patch: &mut Patch,
+) {
     let n = t.normal;
     patch.normal = n;
     patch.normal_of_a = false;
@@ -168,8 +175,14 @@ pub(super) fn add_points(a: &Body<'_>, b: &Body<'_>, t: &Touch, margin: f64, pat
     let (da, db) = (along(&fa, a, b, -n), along(&fb, b, a, n));
     let good = |d: &Option<(f64, Vec3)>| d.filter(|d| d.0 <= t.depth + prefer);
     let (da, db) = (good(&da), good(&db));
+    let lead = prefer
+        * match favours {
+            Favours::None => 1e-3,
+            Favours::A => 1.0,
+            Favours::B => -1.0,
+        };
     match (da, db) {
-        (Some((x, m)), y) if y.is_none_or(|y| x <= y.0 + 1e-3 * prefer) => {
+        (Some((x, m)), y) if y.is_none_or(|y| x <= y.0 + lead) => {
             patch.normal = -m;
             patch.normal_of_a = true;
             let other = feature(b, -m);

@@ -251,9 +251,31 @@ pub struct Axis {
     number: u8,
     /// Of other shapes: the direction from B to A, in the first shape's coordinates, in 127ths; zero if not known.
     direction: [i8; 3],
+    /// Whose face gives the normal where one of either is about as good.
+    favours: Favours,
+}
+
+/// The shape whose faces are favoured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Favours {
+    #[default]
+    None,
+    A,
+    B,
 }
 
 impl Axis {
+    /// For a pair of which one stands still for ever: normals are those of its faces where they may be. What slides over a floor of many
+    /// parts feels one direction then, and not its own tilt by the softness of contacts.
+    pub fn of_fixed(a: bool, b: bool) -> Self {
+        let favours = match (a, b) {
+            (true, false) => Favours::A,
+            (false, true) => Favours::B,
+            _ => Favours::None,
+        };
+        Self { favours, ..Self::default() }
+    }
+
     fn direction(&self) -> Option<Vec3> {
         (self.direction != [0; 3]).then(|| Vec3::from_array(self.direction.map(f64::from)))
     }

@@ -3,7 +3,7 @@
 use super::candidates::{Candidate, Workspace, group};
 use super::convex::{add_points, clip, feature};
 use super::patch::{Patch, Spot};
-use super::{Manifold, Vec3f};
+use super::{Favours, Manifold, Vec3f};
 use crate::narrow::collide_frames;
 use crate::narrow::convex::{Touch, touch_within};
 use crate::narrow::heightfield_shape::Zone;
@@ -227,13 +227,13 @@ fn add_touch_points(
     match touch {
         // Beyond an edge within the surface the neighbour bears the body.
         Some(t) if t.normal.dot(n) > 1.0 - SAME && !at_inner_edge(facet, &t) => {
-            add_points(body, triangle, &Touch { normal: n, ..t }, margin, patch);
+            add_points(body, triangle, &Touch { normal: n, ..t }, margin, Favours::B, patch);
         }
         Some(t)
             if t.normal.dot(n) <= 1.0 - SAME
                 && (allowed(facet, &t) || (t.normal.dot(n) > 0.0 && (over.bears)(t.b, t.normal))) =>
         {
-            add_points(body, triangle, &t, margin, patch);
+            add_points(body, triangle, &t, margin, Favours::B, patch);
             // Of a body with edges the face that looks at an edge must be one of those allowed, too.
             if patch.normal.dot(n) < t.normal.dot(n) - SAME
                 && !allowed(facet, &Touch { normal: patch.normal, ..t })

@@ -235,12 +235,12 @@ impl PairCache {
         if !collides(ga.shape.kind(), gb.shape.kind()) {
             return;
         }
-        let (a, b) = if gb.before(ga) { (b, a) } else { (a, b) };
+        let ((a, ga), (b, gb)) = if gb.before(ga) { ((b, gb), (a, ga)) } else { ((a, ga), (b, gb)) };
         let pair = Pair {
             a,
             b,
             first: NONE,
-            axis: Axis::default(),
+            axis: Axis::of_fixed(ga.motion == Motion::Fixed, gb.motion == Motion::Fixed),
             concave: is_concave(&ga.shape, &gb.shape),
             touching: false,
             free: false,

@@ -1,7 +1,6 @@
 //! Geoms of the pair cache follow the bodies.
 
 use super::Pipeline;
-use super::continuous::Fast;
 use crate::{GeomInfo, World};
 use ferrode_collide::pairs::{Motion, Told};
 use ferrode_collide::{Frame, GeomKey};
@@ -12,7 +11,6 @@ use ferrode_math::stage::Crew;
 /// What a task found that follows bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Followed {
-    fast: Vec<Fast>,
     /// Geoms whose bodies became kinematic, or are no longer.
     other_kind: Vec<u32>,
 }
@@ -22,45 +20,42 @@ pub(super) struct Followed {
 pub(super) struct Known {
     key: GeomKey,
     pub body: Option<BodyKey>,
-    offset: Option<Pose>,
+    pub offset: Option<Pose>,
     /// Of the body, when the geom last followed it.
     pose_version: u64,
     motion: Motion,
     /// From the body's centre to the geom's origin, along the world's axes.
     pub arm: [f32; 3],
     /// Distance that the geom may move in a step before it could pass through something.
-    thickness: f32,
+    pub thickness: f32,
     /// Whether its material has a friction direction.
     pub directed: bool,
     ahead: f32,
 }
 
 impl World {
-    /// Brings the cache's geoms to where the bodies are, and notes bodies that move too far in one step.
+    /// Brings the cache's geoms to where the bodies are.
     pub(super) fn follow_bodies(&mut self, h: f64, crew: &Crew, pipeline: &mut Pipeline) {
         if pipeline.seen_geoms != Some(self.geom_version) {
             pipeline.seen_geoms = Some(self.geom_version);
             self.take_geoms_in(pipeline);
         }
         let all = self.call_geoms(pipeline);
-        let Pipeline { pairs, known, called, fast, followed, .. } = pipeline;
+        let Pipeline { pairs, known, called, followed, .. } = pipeline;
         let (margin, dynamics) = (pairs.settings().margin, &self.dynamics);
         for found in followed.iter_mut() {
-            found.fast.clear();
             found.other_kind.clear();
         }
         let look = |slot: u32, known: &mut Option<Known>, geom: &mut Told<'_>, found: &mut Followed| {
             let Some(known) = known else { return };
-            let Some((key, body)) = known.body.and_then(|key| Some((key, dynamics.body(key).ok()?))) else {
+            let Some(body) = known.body.and_then(|key| dynamics.body(key).ok()) else {
                 return;
             };
             if body.is_kinematic() != (known.motion == Motion::Fixed) {
                 found.other_kind.push(slot);
                 return;
             }
-            if let Some(fast) = known.follow(key, body, h, margin, geom) {
-                found.fast.push(fast);
-            }
+            known.follow(body, h, margin, geom);
         };
         if all {
             pairs.tell(crew, known, followed, look);
@@ -71,21 +66,18 @@ impl World {
                 pairs.tell_of(slot, |geom| look(slot, known, geom, &mut followed[0]));
             }
         }
-        fast.clear();
         for found in followed {
-            fast.append(&mut found.fast);
             for slot in found.other_kind.drain(..) {
                 // It became kinematic, or dynamic again.
                 let Some(Some(known)) = known.get_mut(slot as usize) else { continue };
-                let Some((key, body)) = known.body.and_then(|key| Some((key, dynamics.body(key).ok()?)))
-                else {
+                let Some(body) = known.body.and_then(|key| dynamics.body(key).ok()) else {
                     continue;
                 };
                 known.motion = motion_of(body);
                 if let (Some(shape), Some(frame)) = (pairs.shape(slot).cloned(), pairs.frame(slot).copied()) {
                     pairs.insert(slot, shape, &frame, known.motion);
                 }
-                pairs.tell_of(slot, |geom| fast.extend(known.follow(key, body, h, margin, geom)));
+                pairs.tell_of(slot, |geom| known.follow(body, h, margin, geom));
             }
         }
     }
@@ -130,7 +122,8 @@ impl World {
 
     /// Takes geoms into the cache that are new or were changed by hand, and those out that are no more.
     fn take_geoms_in(&mut self, pipeline: &mut Pipeline) {
-        let Pipeline { pairs, known, .. } = pipeline;
+        let Pipeline { pairs, known, least_thickness, .. } = pipeline;
+        *least_thickness = f32::INFINITY;
         known.resize(self.geom_infos.len().max(known.len()), None);
         for (slot, known) in known.iter_mut().enumerate() {
             let info = self.geom_infos.get_mut(slot).and_then(Option::as_mut);
@@ -141,7 +134,10 @@ impl World {
                 }
                 continue;
             };
-            if known.as_ref().is_some_and(|k| k.key == info.key) && !info.changed {
+            if let Some(known) = known.as_ref().filter(|k| k.key == info.key)
+                && !info.changed
+            {
+                least_thickness_of(known, least_thickness);
                 continue;
             }
             info.changed = false;
@@ -157,8 +153,15 @@ impl World {
                 frame = Frame::from(&pose);
             }
             pairs.insert(slot as u32, geom.shape().clone(), &frame, motion);
+            least_thickness_of(&made, least_thickness);
             *known = Some(made);
         }
+    }
+}
+
+fn least_thickness_of(known: &Known, least: &mut f32) {
+    if known.body.is_some() {
+        *least = least.min(known.thickness);
     }
 }
 
@@ -182,15 +185,8 @@ impl Known {
 }
 
 impl Known {
-    /// Brings the geom to where its body is; tells if that may go too far in one step.
-    fn follow(
-        &mut self,
-        key: BodyKey,
-        body: &Body,
-        h: f64,
-        margin: f64,
-        geom: &mut Told<'_>,
-    ) -> Option<Fast> {
+    /// Brings the geom to where its body is.
+    fn follow(&mut self, body: &Body, h: f64, margin: f64, geom: &mut Told<'_>) {
         let awake = body.is_enabled() && !body.is_quarantined();
         if self.motion != Motion::Fixed && awake != (self.motion == Motion::Awake) {
             self.motion = if awake { Motion::Awake } else { Motion::Asleep };
@@ -208,7 +204,7 @@ impl Known {
             geom.move_geom(&frame);
         }
         if !awake {
-            return None;
+            return;
         }
         let travel = body.linear_velocity().length() * h;
         let ahead = if travel > margin { (travel - margin) as f32 } else { 0.0 };
@@ -216,8 +212,6 @@ impl Known {
             self.ahead = ahead;
             geom.set_ahead(ahead.min(self.thickness));
         }
-        let fast = travel > f64::from(self.thickness) && self.motion == Motion::Awake;
-        fast.then(|| Fast { geom: self.key, body: key, start: body.pose() })
     }
 }
 

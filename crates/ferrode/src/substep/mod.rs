@@ -14,7 +14,6 @@ mod surfaces;
 
 use crate::{Error, Step, World};
 use contacts::Filled;
-use continuous::Fast;
 use ferrode_collide::pairs::{PairCache, PairSettings};
 use ferrode_dynamics::ContactManifold;
 use geoms::{Followed, Known};
@@ -35,7 +34,8 @@ pub(crate) struct Pipeline {
     /// By the contacts' places in the cache.
     manifolds: Vec<ContactManifold>,
     surfaces: SurfaceTable,
-    fast: Vec<Fast>,
+    /// The least distance that a geom may move in a step before it could pass through something.
+    least_thickness: f32,
     /// What tasks found.
     followed: Vec<Followed>,
     filled: Vec<Filled>,
@@ -55,7 +55,7 @@ impl Default for Pipeline {
             seen_rules: (0, 0),
             manifolds: Vec::new(),
             surfaces: SurfaceTable::default(),
-            fast: Vec::new(),
+            least_thickness: f32::INFINITY,
             followed: Vec::new(),
             filled: Vec::new(),
             max_depth: 0.0,
@@ -77,7 +77,7 @@ impl World {
         let crew = self.dynamics.crew().clone();
         self.follow_bodies(h, &crew, pipeline);
         self.update_pairs(&crew, pipeline);
-        self.fill_manifolds(&crew, pipeline);
+        self.fill_manifolds(h, &crew, pipeline);
         let surfaces = &pipeline.surfaces.list;
         let dynamics = self.dynamics.step_with_manifolds(h, &mut pipeline.manifolds, surfaces)?;
         pipeline.keep_impulses(&crew);

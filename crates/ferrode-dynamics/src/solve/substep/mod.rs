@@ -17,6 +17,7 @@ mod articulation;
 mod bodies;
 mod colour;
 mod contact;
+mod far;
 mod joints;
 mod keys;
 mod manifold;
