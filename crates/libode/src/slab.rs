@@ -21,12 +21,21 @@ const RESERVE: usize = 64;
 /// Addresses of all chunks, with the kind of their records in the low bits; open addressing.
 static CHUNKS: [AtomicUsize; TABLE] = [const { AtomicUsize::new(0) }; TABLE];
 
+#[inline]
 fn slot_of(address: usize) -> usize {
     (address / CHUNK).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> (usize::BITS - TABLE.trailing_zeros())
 }
 
+/// Whether a chunk of records of a kind begins there. The first look at the table nearly always tells.
+#[inline]
 fn is_chunk(address: usize, kind: usize) -> bool {
-    let mut slot = slot_of(address);
+    let slot = slot_of(address);
+    let entry = CHUNKS[slot].load(Ordering::Acquire);
+    entry == address | kind || (entry != 0 && is_chunk_from(address, kind, slot))
+}
+
+#[cold]
+fn is_chunk_from(address: usize, kind: usize, mut slot: usize) -> bool {
     for _ in 0..TABLE {
         let entry = CHUNKS[slot].load(Ordering::Acquire);
         if entry == address | kind {
@@ -312,7 +321,9 @@ impl<T: Record> Handle<T> {
     fn record(self) -> Option<&'static T> {
         let address = self.0.addr();
         let offset = address % CHUNK;
-        let fits = offset.is_multiple_of(size_of::<T>()) && offset / size_of::<T>() < CHUNK / size_of::<T>();
+        // Behind the last record of a chunk there may be room for a part of one.
+        let last = (CHUNK / size_of::<T>() - 1) * size_of::<T>();
+        let fits = offset <= last && offset.is_multiple_of(size_of::<T>());
         if !fits || !is_chunk(address - offset, T::KIND) {
             return None;
         }

@@ -68,6 +68,9 @@ fn contacts_of(
     if let Some((collider, swapped)) = collider(a.class.get(), b.class.get()) {
         return from + by_program(a, b, (flags & !0xffff) | left as c_uint, target, from, collider, swapped);
     }
+    if a.is_plain() && b.is_plain() {
+        return plain_contacts(a, b, CollideOptions { max_contacts: left as u16, ..options }, target, from);
+    }
     let (Some((sa, fa)), Some((sb, fb))) = (a.solid(), b.solid()) else { return from };
     let (mut fa, mut fb) = (fa, fb);
     let (view_a, view_b) = (sa.view_for(&fa, sb, &fb), sb.view_for(&fb, sa, &fa));
@@ -106,6 +109,36 @@ fn contacts_of(
     let count = found.len().min(left);
     FOUND.try_with(|kept| *kept.borrow_mut() = found).ok();
     from + count
+}
+
+/// Contacts of two geoms about which the program is not asked, as [`contacts_of`].
+#[inline]
+fn plain_contacts(
+    a: &'static GeomRecord,
+    b: &'static GeomRecord,
+    options: CollideOptions,
+    target: Target,
+    from: usize,
+) -> usize {
+    let (fa, fb) = (a.frame(), b.frame());
+    let (ga, gb) = (GeomId::of(a), GeomId::of(b));
+    let find = |found: &mut Vec<GeomContact>| {
+        found.clear();
+        a.shape.with(|sa| {
+            b.shape.with(|sb| {
+                if let (Some(sa), Some(sb)) = (sa, sb) {
+                    collide_frames((sa, &fa), (sb, &fb), options, found);
+                }
+            });
+        });
+        let count = found.len().min(usize::from(options.max_contacts));
+        for (i, contact) in found[..count].iter().enumerate() {
+            write(target, from + i, contact, ga, gb);
+        }
+        from + count
+    };
+    // In a static destructor the thread's memory may be gone.
+    FOUND.try_with(|found| find(&mut found.borrow_mut())).unwrap_or_else(|_| find(&mut Vec::new()))
 }
 
 /// Contacts by a collider of the program's. Given the geoms in the other order, its contacts are turned round.

@@ -119,6 +119,12 @@ impl GeomRecord {
         (class::SIMPLE_SPACE..=class::QUADTREE_SPACE).contains(&self.class.get())
     }
 
+    /// Whether it is just its shape at its place: nothing is shared with the program, and it is not asked.
+    #[inline]
+    fn is_plain(&self) -> bool {
+        (class::SPHERE..=class::PLANE).contains(&self.class.get())
+    }
+
     fn require_space(&self) -> Outcome<()> {
         if self.is_space() { Ok(()) } else { Err(Fault::user("argument not a space")) }
     }
