@@ -313,7 +313,11 @@ export! {
     fn dBodyGetFiniteRotationAxis(body: BodyId, axis: OutVector) {
         axis.set(vector3(read(body, Body::finite_rotation_axis)?))?
     }
-    fn dBodySetMovedCallback(body: BodyId, callback: Option<MovedCallback>) { body.get()?.moved.set(callback) }
+    fn dBodySetMovedCallback(body: BodyId, callback: Option<MovedCallback>) {
+        let body = body.get()?;
+        crate::stepping::watch();
+        body.moved.set(callback)
+    }
 
     // ---- joints ----
 

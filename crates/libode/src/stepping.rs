@@ -7,6 +7,7 @@ use crate::record::{BodyId, JointId, Required, WorldId, WorldRecord, handle_of};
 use crate::threading::{FunctionsInfo, ImplementationId};
 use core::cell::Cell;
 use core::ffi::{c_int, c_uint, c_void};
+use core::sync::atomic::{AtomicBool, Ordering};
 use ferrode_dynamics::{BodyKey, JointFeedback, Stepper, World};
 use ferrode_math::Vec3;
 use ferrode_math::random::OdeRandom;
@@ -160,12 +161,22 @@ pub fn step(world: &'static WorldRecord, method: Method, stepsize: Real) -> Outc
     Ok(1)
 }
 
+/// Whether any body has had a moved callback. Until then nobody looks at bodies during a step: they are shown after it.
+static WATCHED: AtomicBool = AtomicBool::new(false);
+
+/// Has bodies shown one by one as steps move them, for callbacks to see.
+pub fn watch() {
+    WATCHED.store(true, Ordering::Relaxed);
+}
+
 /// Shows a body that was just moved and calls its moved callback, if it has one. What the callback changes holds.
 fn call_back(world: &'static WorldRecord, engine: &mut World, key: BodyKey) {
     let Ok(body) = engine.body(key) else { return };
     let handle: BodyId = handle_of(body.user_data());
     let Some(record) = handle.live() else { return };
-    record.show(&body.state());
+    if WATCHED.load(Ordering::Relaxed) {
+        record.show(&body.state());
+    }
     // A space that is locked, by a step within a near callback, learns of it when it is asked again.
     crate::geom::body_moved(record).ok();
     let Some(moved) = record.moved.get() else { return };
