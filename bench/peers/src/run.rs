@@ -77,10 +77,11 @@ pub fn measure(scene: &Scene, choice: &Choice, threads: usize, steps: usize) -> 
     }
 }
 
-/// Runs of all engines whose name has `word` in it, in turns; of each engine the one with the median time.
-pub fn take_turns(file: &Path, scene: &Scene, word: &str, threads: usize, reps: usize) -> Vec<Run> {
+/// Runs of all engines whose name has one of the words in it that commas part, in turns; of each engine the one with the median time.
+pub fn take_turns(file: &Path, scene: &Scene, words: &str, threads: usize, reps: usize) -> Vec<Run> {
+    let wanted = |name: &str| words.split(',').any(|word| name.contains(word));
     let choices: Vec<Choice> =
-        engines::all().into_iter().filter(|c| c.name.contains(word) && (threads == 1 || c.threads)).collect();
+        engines::all().into_iter().filter(|c| wanted(c.name) && (threads == 1 || c.threads)).collect();
     let mut runs: Vec<Vec<Run>> = choices.iter().map(|_| Vec::new()).collect();
     for turn in 0..reps {
         for (choice, runs) in choices.iter().zip(&mut runs) {
