@@ -17,6 +17,7 @@ use ferrode_math::simd::Quad;
 
 /// The most rows: a visit takes time in proportion to them.
 const MOST_ROWS: usize = 24;
+const _: () = assert!(MOST_ROWS.div_ceil(4) == 6, "Small::sweep has a case for each width");
 
 /// The memory of the method.
 #[derive(Clone, Debug, Default)]
@@ -102,15 +103,32 @@ impl Small {
     /// Visits every row once.
     #[inline(always)]
     fn sweep<Q: Quad, const ZERO: bool>(&mut self, packed: &[PackedRow], order: &[u32], lambda: &mut [f64]) {
-        let Self { matrix, wanted, .. } = self;
-        let width = wanted.len();
+        match self.wanted.len() {
+            1 => self.sweep_blocks::<Q, ZERO, 1>(packed, order, lambda),
+            2 => self.sweep_blocks::<Q, ZERO, 2>(packed, order, lambda),
+            3 => self.sweep_blocks::<Q, ZERO, 3>(packed, order, lambda),
+            4 => self.sweep_blocks::<Q, ZERO, 4>(packed, order, lambda),
+            5 => self.sweep_blocks::<Q, ZERO, 5>(packed, order, lambda),
+            _ => self.sweep_blocks::<Q, ZERO, 6>(packed, order, lambda),
+        }
+    }
+
+    /// Visits every row once; the matrix has `W` blocks of columns.
+    #[inline(always)]
+    fn sweep_blocks<Q: Quad, const ZERO: bool, const W: usize>(
+        &mut self,
+        packed: &[PackedRow],
+        order: &[u32],
+        lambda: &mut [f64],
+    ) {
+        let Some(wanted) = self.wanted.first_chunk_mut::<W>() else { return };
+        let columns = self.matrix.as_chunks::<W>().0;
         let at = |row: u32| row as usize;
         let Some(mut row) = order.first().copied().map(at) else { return };
         let mut change = wanted.as_flattened()[row];
         // After the last row the first one again, whose change nobody asks for.
         for next in order[1..].iter().chain(order.first()).copied().map(at) {
-            let r = &packed[row];
-            let column = &matrix[row * width..][..width];
+            let (Some(r), Some(column)) = (packed.get(row), columns.get(row)) else { return };
             let old = lambda[row];
             let (lo, hi) = bounds::<ZERO>(r, lambda[r.scale as usize]);
             let delta = clamp(change, lo - old, hi - old);
