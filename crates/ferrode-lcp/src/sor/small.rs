@@ -17,6 +17,9 @@ use ferrode_math::simd::Quad;
 
 /// The most rows: a visit takes time in proportion to them.
 const MOST_ROWS: usize = 24;
+/// Room for these and the force that is always 1, such that no index needs a look whether it is within.
+const PLACES: usize = 32;
+const _: () = assert!(MOST_ROWS < PLACES);
 const _: () = assert!(MOST_ROWS.div_ceil(4) == 6, "Small::sweep has a case for each width");
 
 /// The memory of the method.
@@ -28,6 +31,15 @@ pub(super) struct Small {
     matrix: Vec<[f64; 4]>,
     /// The changes that the rows want.
     wanted: Vec<[f64; 4]>,
+    limits: [Limit; PLACES],
+}
+
+/// The bounds of a row's force, and the force that scales them.
+#[derive(Clone, Copy, Debug, Default)]
+struct Limit {
+    lo: f64,
+    hi: f64,
+    scale: u32,
 }
 
 /// Whether the method is the faster one. With many bodies, rows seldom wait for each other.
@@ -48,16 +60,19 @@ impl Small {
         random: &mut impl FnMut(u32) -> u32,
     ) {
         self.load::<Q>(packed, acceleration.len());
+        let mut forces = [0.0; PLACES];
+        forces[packed.len()] = 1.0;
         for done in 0..params.iterations {
             if done > 0 && done % SHUFFLE_PERIOD == 0 {
                 shuffle(order, random);
             }
             match params.inf_times_zero {
-                InfTimesZero::Unbounded => self.sweep::<Q, false>(packed, order, lambda),
-                InfTimesZero::Zero => self.sweep::<Q, true>(packed, order, lambda),
+                InfTimesZero::Unbounded => self.sweep::<Q, false>(order, &mut forces),
+                InfTimesZero::Zero => self.sweep::<Q, true>(order, &mut forces),
             }
         }
-        for (row, force) in packed.iter().zip(&*lambda) {
+        lambda[..packed.len()].copy_from_slice(&forces[..packed.len()]);
+        for (row, force) in packed.iter().zip(&forces) {
             for (body, b) in row.body.into_iter().zip([row.vector::<Q>(1), row.vector(3)]) {
                 if let Some(SorAcceleration(a)) = acceleration.get_mut(body as usize) {
                     Six::load(a).plus(b.scaled(*force)).store(a);
@@ -70,7 +85,7 @@ impl Small {
     #[inline(always)]
     fn load<Q: Quad>(&mut self, packed: &[PackedRow], bodies: usize) {
         let width = packed.len().div_ceil(4);
-        let Self { columns, matrix, wanted } = self;
+        let Self { columns, matrix, wanted, limits } = self;
         columns.clear();
         columns.resize(bodies * 6 * width, [0.0; 4]);
         wanted.clear();
@@ -78,6 +93,7 @@ impl Small {
         let numbers = columns.as_flattened_mut();
         for (i, row) in packed.iter().enumerate() {
             wanted.as_flattened_mut()[i] = row.rhs;
+            limits[i] = Limit { lo: row.lo, hi: row.hi, scale: row.scale };
             for (side, body) in row.body.into_iter().enumerate() {
                 if (body as usize) < bodies {
                     let start = body as usize * 24 * width + i;
@@ -88,7 +104,7 @@ impl Small {
             }
         }
         matrix.clear();
-        matrix.resize(packed.len() * width, [0.0; 4]);
+        matrix.resize(PLACES * width, [0.0; 4]);
         for (i, (out, row)) in matrix.chunks_exact_mut(width).zip(packed).enumerate() {
             for (side, body) in row.body.into_iter().enumerate() {
                 if (body as usize) < bodies {
@@ -102,14 +118,14 @@ impl Small {
 
     /// Visits every row once.
     #[inline(always)]
-    fn sweep<Q: Quad, const ZERO: bool>(&mut self, packed: &[PackedRow], order: &[u32], lambda: &mut [f64]) {
+    fn sweep<Q: Quad, const ZERO: bool>(&mut self, order: &[u32], forces: &mut [f64; PLACES]) {
         match self.wanted.len() {
-            1 => self.sweep_blocks::<Q, ZERO, 1>(packed, order, lambda),
-            2 => self.sweep_blocks::<Q, ZERO, 2>(packed, order, lambda),
-            3 => self.sweep_blocks::<Q, ZERO, 3>(packed, order, lambda),
-            4 => self.sweep_blocks::<Q, ZERO, 4>(packed, order, lambda),
-            5 => self.sweep_blocks::<Q, ZERO, 5>(packed, order, lambda),
-            _ => self.sweep_blocks::<Q, ZERO, 6>(packed, order, lambda),
+            1 => self.sweep_blocks::<Q, ZERO, 1>(order, forces),
+            2 => self.sweep_blocks::<Q, ZERO, 2>(order, forces),
+            3 => self.sweep_blocks::<Q, ZERO, 3>(order, forces),
+            4 => self.sweep_blocks::<Q, ZERO, 4>(order, forces),
+            5 => self.sweep_blocks::<Q, ZERO, 5>(order, forces),
+            _ => self.sweep_blocks::<Q, ZERO, 6>(order, forces),
         }
     }
 
@@ -117,22 +133,22 @@ impl Small {
     #[inline(always)]
     fn sweep_blocks<Q: Quad, const ZERO: bool, const W: usize>(
         &mut self,
-        packed: &[PackedRow],
         order: &[u32],
-        lambda: &mut [f64],
+        forces: &mut [f64; PLACES],
     ) {
-        let Some(wanted) = self.wanted.first_chunk_mut::<W>() else { return };
-        let columns = self.matrix.as_chunks::<W>().0;
-        let at = |row: u32| row as usize;
+        let Self { matrix, wanted, limits, .. } = self;
+        let Some(wanted) = wanted.first_chunk_mut::<W>() else { return };
+        let Some(columns) = matrix.as_chunks::<W>().0.first_chunk::<PLACES>() else { return };
+        let at = |row: u32| row as usize % PLACES;
         let Some(mut row) = order.first().copied().map(at) else { return };
         let mut change = wanted.as_flattened()[row];
         // After the last row the first one again, whose change nobody asks for.
         for next in order[1..].iter().chain(order.first()).copied().map(at) {
-            let (Some(r), Some(column)) = (packed.get(row), columns.get(row)) else { return };
-            let old = lambda[row];
-            let (lo, hi) = bounds::<ZERO>(r, lambda[r.scale as usize]);
+            let (limit, column) = (&limits[row], &columns[row]);
+            let old = forces[row];
+            let (lo, hi) = bounds::<ZERO>(limit.lo, limit.hi, forces[at(limit.scale)]);
             let delta = clamp(change, lo - old, hi - old);
-            lambda[row] = clamp(old + change, lo, hi);
+            forces[row] = clamp(old + change, lo, hi);
             change = wanted.as_flattened()[next] + column.as_flattened()[next] * delta;
             let delta = Q::splat(delta);
             for (wanted, column) in wanted.iter_mut().zip(column) {

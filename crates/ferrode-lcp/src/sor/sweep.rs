@@ -256,9 +256,9 @@ pub(super) fn interleave(
 
 /// The bounds of a row's force, given the force that scales them. `ZERO`: infinity times zero is zero.
 #[inline(always)]
-pub(super) fn bounds<const ZERO: bool>(r: &PackedRow, scale: f64) -> (f64, f64) {
+pub(super) fn bounds<const ZERO: bool>(lo: f64, hi: f64, scale: f64) -> (f64, f64) {
     let size = scale.abs();
-    if ZERO && size == 0.0 { (0.0, 0.0) } else { (r.lo * size, r.hi * size) }
+    if ZERO && size == 0.0 { (0.0, 0.0) } else { (lo * size, hi * size) }
 }
 
 /// `x` within `[lo, hi]`; a bound that is not a number is none.
@@ -308,7 +308,7 @@ impl<Q: Quad, const ZERO: bool, const DYNAMIC: bool> Sweep<'_, Q, ZERO, DYNAMIC>
         let r = &self.packed[row];
         let (first, second) = (r.body[0] as usize, r.body[1] as usize);
         let old = self.lambda[row];
-        let (lo, hi) = bounds::<ZERO>(r, self.lambda[r.scale as usize]);
+        let (lo, hi) = bounds::<ZERO>(r.lo, r.hi, self.lambda[r.scale as usize]);
         let (a0, a1) = (self.load(first), self.load(second));
         let wanted = r.dot([a0, a1], r.rhs - r.cfm * old);
         let delta = clamp(wanted, lo - old, hi - old);
@@ -350,7 +350,7 @@ impl<Q: Quad, const ZERO: bool, const DYNAMIC: bool> Sweep<'_, Q, ZERO, DYNAMIC>
                 wanted[k] += coupling[c] * change;
                 c += 1;
             }
-            let (lo, hi) = bounds::<ZERO>(r[k], self.lambda[r[k].scale as usize]);
+            let (lo, hi) = bounds::<ZERO>(r[k].lo, r[k].hi, self.lambda[r[k].scale as usize]);
             self.lambda[rows[k] as usize] = clamp(old[k] + wanted[k], lo, hi);
             delta[k] = clamp(wanted[k], lo - old[k], hi - old[k]);
             a0 = a0.plus(r[k].vector(1).scaled(delta[k]));
