@@ -21,6 +21,7 @@
 
 mod arena;
 mod body;
+mod carried;
 mod check;
 mod damping;
 mod ends;

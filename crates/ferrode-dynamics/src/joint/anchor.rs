@@ -1,5 +1,6 @@
 //! Anchors that joints share: a point set in world coordinates, kept in the coordinates of both bodies.
 
+use crate::carried::Carried;
 use crate::ends::{Ends, StepContext};
 use crate::rows::Row;
 use ferrode_math::Vec3;
@@ -40,6 +41,11 @@ impl Anchors {
     pub fn in_callers_order(&self, ends: &Ends<'_>) -> [Vec3; 2] {
         let (a, b) = (self.world1(ends), self.world2(ends));
         if ends.reverse { [b, a] } else { [a, b] }
+    }
+
+    /// What holds the two points together.
+    pub fn carried(&self, ends: &Ends<'_>, cfm: f64) -> Carried {
+        Carried::anchors(ends, [ends.a().rotation * self.first, ends.b().rotation * self.second], cfm)
     }
 
     /// How far the two points are apart.

@@ -3,6 +3,7 @@
 use super::anchor::Anchors;
 use super::{JointError, JointModel, JointMut, JointRef};
 use crate::Error;
+use crate::carried::{Carried, is_spring};
 use crate::ends::{Ends, StepContext};
 use crate::error::finite;
 use crate::rows::{JointRows, RowCount};
@@ -39,6 +40,10 @@ impl JointModel for Ball {
         for row in out.rows.iter_mut() {
             row.cfm = self.cfm;
         }
+    }
+
+    fn carried(&mut self, ends: &Ends<'_>, ctx: &StepContext) -> Option<Carried> {
+        (!is_spring(self.cfm, ctx)).then(|| self.anchors.carried(ends, self.cfm))
     }
 
     fn attached(&mut self, ends: &Ends<'_>) {

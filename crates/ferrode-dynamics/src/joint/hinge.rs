@@ -5,6 +5,7 @@ use super::axis::{hinge_angle, reset_axes, set_axes, write_alignment_rows};
 use super::limit_motor::{LimitMotor, RowAxis, limit_motors};
 use super::{JointError, JointModel, JointMut, JointRef, LimitedAxis};
 use crate::Error;
+use crate::carried::{Carried, CarriedHinge};
 use crate::ends::{Ends, StepContext};
 use crate::error::{finite, finite_number};
 use crate::rows::{JointRows, RowCount};
@@ -67,6 +68,17 @@ impl JointModel for Hinge {
         let b = ends.b().rotation * self.axes[1];
         write_alignment_rows(a, b, ctx.k(), ends.two(), &mut out.rows[3..5], 3);
         self.limit_motor.write_row(ends, ctx, RowAxis::Angular(a), 5, out, &mut 5);
+    }
+
+    fn carried(&mut self, ends: &Ends<'_>, ctx: &StepContext) -> Option<Carried> {
+        let angle = self.limit_motor.has_angular_stops().then(|| self.internal_angle(ends));
+        self.limit_motor.test(angle);
+        let drive = self.limit_motor.carried(angle, ctx)?;
+        let mut carried = self.anchors.carried(ends, ctx.cfm);
+        let axis = self.axis(ends);
+        let slip = ends.b().rotation * self.axes[1] - axis;
+        carried.hinge = Some(CarriedHinge { axis, slip, across: plane_space(axis).into(), drive });
+        Some(carried)
     }
 
     fn attached(&mut self, ends: &Ends<'_>) {

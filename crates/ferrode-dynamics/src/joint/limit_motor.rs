@@ -10,6 +10,7 @@
 //! plain force beside it (ODE manual, "Stop and motor parameters").
 
 use super::{JointData, JointMut, JointRef, Param};
+use crate::carried::{Drive, is_spring};
 use crate::ends::{Ends, StepContext};
 use crate::error::not_nan;
 use crate::rows::{JointRows, Row, RowKind};
@@ -185,6 +186,23 @@ impl LimitMotor {
     /// Where the axis stood in its range at the start of the latest step.
     pub fn state(&self) -> LimitState {
         self.state
+    }
+
+    /// What acts about or along the axis at a place, or at any without stops that count, as far as a solver can carry it along: not a
+    /// motor with stops, nor stops that bounce, lock or are springs.
+    pub(crate) fn carried(&self, place: Option<f64>, ctx: &StepContext) -> Option<Drive> {
+        let stops = (self.low.is_finite() || self.high.is_finite()).then_some(place).flatten();
+        let Some(x) = stops else {
+            let motor = Drive::Motor { velocity: self.velocity, force: self.max_force, cfm: self.cfm };
+            return Some(if self.max_force > 0.0 { motor } else { Drive::Free });
+        };
+        if self.max_force > 0.0 || self.bounce > 0.0 || self.low == self.high || is_spring(self.stop_cfm, ctx)
+        {
+            return None;
+        }
+        let room = |stop: f64, room: f64| if stop.is_finite() { room } else { f64::INFINITY };
+        let (below, above) = (room(self.low, x - self.low), room(self.high, self.high - x));
+        Some(Drive::Stop { room: below.min(above), upper: above < below, cfm: self.stop_cfm })
     }
 
     /// How far the axis was beyond its stop at the start of the latest step: negative below the low one, positive above

@@ -53,6 +53,7 @@ pub use transmission::{Transmission, TransmissionMode};
 pub use universal::Universal;
 
 use crate::arena::{NIL, RawKey, key_type};
+use crate::carried::Carried;
 use crate::ends::{Ends, StepContext};
 use crate::rows::{JointRows, RowCount, Wrench};
 use crate::{BodyKey, Error, GroupKey, World};
@@ -124,6 +125,11 @@ pub(crate) trait JointModel {
 
     /// Fills as many rows as were counted (ODE's "info 2"); may add forces.
     fn write_rows(&mut self, ends: &Ends<'_>, ctx: &StepContext, out: &mut JointRows<'_>);
+
+    /// What the joint's rows are made of, if they change with the bodies' motion alone; measures limits then. Such a joint adds no forces.
+    fn carried(&mut self, _ends: &Ends<'_>, _ctx: &StepContext) -> Option<Carried> {
+        None
+    }
 
     /// Recomputes relative values after the joint was attached to at least one body.
     fn attached(&mut self, _ends: &Ends<'_>) {}

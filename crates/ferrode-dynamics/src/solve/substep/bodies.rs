@@ -113,13 +113,15 @@ impl SolverBodies {
         crew.each(lists, |share, (velocities, references, totals)| {
             let lists =
                 velocities.iter_mut().zip(references).zip(&accelerations[share * SHARE..]).zip(totals);
+            // Whole records at a time, which compilers keep in vectors.
             for (((u, reference), a), total) in lists {
-                for k in 0..8 {
-                    let impulse = if first { 0.0 } else { u.0[k] - reference.0[k] };
-                    total.0[k] += impulse;
-                    reference.0[k] = u.0[k] + h * a.0[k];
-                    u.0[k] = reference.0[k] + impulse;
-                }
+                let (before, a) = (u.0, a.0);
+                let impulse: [f32; 8] =
+                    if first { [0.0; 8] } else { core::array::from_fn(|k| before[k] - reference.0[k]) };
+                let after: [f32; 8] = core::array::from_fn(|k| before[k] + h * a[k]);
+                total.0 = core::array::from_fn(|k| total.0[k] + impulse[k]);
+                u.0 = core::array::from_fn(|k| after[k] + impulse[k]);
+                reference.0 = after;
             }
         });
     }
@@ -129,9 +131,8 @@ impl SolverBodies {
         let velocities = self.velocities.as_slice();
         crew.each(chunks(&mut self.deltas, SHARE), |share, deltas| {
             for (delta, u) in deltas.iter_mut().zip(&velocities[share * SHARE..]) {
-                for k in 0..8 {
-                    delta.0[k] += h * u.0[k];
-                }
+                let (before, u) = (delta.0, u.0);
+                delta.0 = core::array::from_fn(|k| before[k] + h * u[k]);
             }
         });
     }
@@ -207,6 +208,11 @@ impl SolverBodies {
     /// Whether forces move a body.
     pub fn is_movable(&self, body: u32) -> bool {
         self.scales.get(body as usize).is_some_and(|scale| scale.0[0] > 0.0)
+    }
+
+    /// Whether a body that forces don't move moves by itself.
+    pub fn moves(&self, body: u32) -> bool {
+        self.motions.get(body as usize).is_some_and(|motion| motion.0 != [0.0; 8])
     }
 
     /// The record that the kernels read for a body: none for what no force moves.

@@ -4,12 +4,14 @@
 //! row with a CFM of its own is a spring, converted as `soft` says; others spring back as the settings say. When rows change
 //! between substeps, so do the bodies' velocities: by the impulses so far along the new rows, less those along the old.
 
+use super::articulation::{CarriedJoint, Rates};
 use super::bodies::{SolverBodies, mul_lower_transpose, rotation_of};
 use super::manifold::to_f32;
 use super::soft::Coefficients;
 use crate::Softness;
 use crate::arena::{Arena, NIL};
 use crate::body::Body;
+use crate::carried::is_spring;
 use crate::ends::{Ends, Frame, StepContext};
 use crate::joint::Joint;
 use crate::rows::{JointRows, Row, RowKind, Wrench};
@@ -62,6 +64,8 @@ pub(super) struct JointConstraint {
     /// Whether it is solved as a part of an articulation, and whether the joint is marked so.
     pub exact: bool,
     pub marked: bool,
+    /// Number of its rows if an articulation carries them along, three or six, else 0.
+    pub carried: u8,
     /// Rows of the block, which come first.
     block: u32,
     /// Inverse of the block's matrix, by rows of its lower triangle.
@@ -103,6 +107,12 @@ pub(super) struct Joints {
     /// Jacobians in world units of the joints whose forces are wanted, and the forces.
     world: Vec<[Vec3; 4]>,
     wrenches: Vec<[Wrench; 2]>,
+    /// By constraints: what is carried along, and the impulses of its rows.
+    pub carried: Vec<CarriedJoint>,
+    pub kept: Vec<[f32; 6]>,
+    pub rates: Rates,
+    /// Whether there are joints outside articulations.
+    are_loose: bool,
 }
 
 /// What the joints need of the step.
@@ -156,6 +166,7 @@ impl Joints {
             count: 0,
             exact: exact[0],
             marked: exact[1],
+            carried: 0,
             block: 0,
             inverse: [0.0; BLOCK * (BLOCK + 1) / 2],
             feedback: place,
@@ -163,12 +174,64 @@ impl Joints {
         });
     }
 
-    /// Takes note of the bodies at the joints' ends.
+    /// Finds the joints whose rows articulations can carry along.
+    pub fn find_carried(
+        &mut self,
+        context: &JointContext,
+        bodies: &SolverBodies,
+        world: &Arena<Body>,
+        joints: &mut Arena<Joint>,
+        memory: &[JointMemory],
+    ) {
+        self.carried.clear();
+        self.kept.clear();
+        self.rates = Rates {
+            correct: context.exact_rate as f32,
+            most: EXACT_SPEED as f32,
+            substeps: (1.0 / context.part) as f32,
+        };
+        if !self.constraints.iter().any(|c| c.exact) {
+            return;
+        }
+        self.carried.resize(self.constraints.len(), CarriedJoint::default());
+        self.kept.resize(self.constraints.len(), [0.0; 6]);
+        for (constraint, place) in self.constraints.iter_mut().zip(&mut self.carried) {
+            // Bodies that move by themselves have rows written for them.
+            let driven = |body: u32| !bodies.is_movable(body) && body != NIL && bodies.moves(body);
+            if !constraint.exact || constraint.feedback != NIL || constraint.bodies.into_iter().any(driven) {
+                continue;
+            }
+            let serial = joints.key_of(constraint.joint).serial;
+            let joint = joints.at_mut(constraint.joint);
+            let frame = |body: u32| (body != NIL).then(|| &world.at(bodies.slots[body as usize]).frame);
+            let [first, second] = constraint.bodies.map(frame);
+            let ends = Ends { first, second, reverse: joint.reverse };
+            let Some(carried) = joint.kind.model_mut().carried(&ends, &context.step) else { continue };
+            let remembered = memory.get(constraint.joint as usize).filter(|m| m.serial == serial);
+            let impulses = remembered.map_or([0.0; 6], |m| {
+                let [a, b, c, d, e, f, ..] = m.impulses.map(|x| x * context.ratio);
+                [a, b, c, d, e, f]
+            });
+            constraint.carried = if carried.hinge.is_some() { 6 } else { 3 };
+            *place = CarriedJoint::new(&carried, context.give, context.part, &impulses);
+        }
+    }
+
+    /// Whether there are joints that write their rows, in each substep.
+    pub fn are_written(&self) -> bool {
+        self.constraints.iter().any(|c| c.carried == 0)
+    }
+
+    /// Takes note of the bodies at the ends of joints that write their rows.
     pub fn begin(&mut self, bodies: &SolverBodies, world: &Arena<Body>) {
+        self.are_loose = self.constraints.iter().any(|c| !c.exact);
+        if !self.are_written() {
+            return;
+        }
         self.seen.clear();
         self.seen.resize(bodies.len(), false);
         self.frames.resize(bodies.len(), Frame::WORLD);
-        for constraint in &self.constraints {
+        for constraint in self.constraints.iter().filter(|c| c.carried == 0) {
             for body in constraint.bodies {
                 if body != NIL && !core::mem::replace(&mut self.seen[body as usize], true) {
                     self.jointed.push(body);
@@ -189,7 +252,7 @@ impl Joints {
         joints: &mut Arena<Joint>,
         memory: &[JointMemory],
     ) {
-        if self.constraints.is_empty() {
+        if !self.are_written() {
             return;
         }
         let (first, end) = (when == When::First, when == When::End);
@@ -199,6 +262,9 @@ impl Joints {
         self.world.clear();
         for i in 0..self.constraints.len() {
             let mut constraint = self.constraints[i];
+            if constraint.carried > 0 {
+                continue;
+            }
             let old = constraint.first as usize..(constraint.first + constraint.count) as usize;
             let old = if first { 0..0 } else { old };
             let loose = !constraint.exact;
@@ -297,6 +363,9 @@ impl Joints {
 
     /// Solves each joint once.
     pub fn solve(&mut self, relax: bool, bodies: &mut SolverBodies) {
+        if !self.are_loose {
+            return;
+        }
         for constraint in self.constraints.iter().filter(|c| !c.exact) {
             let rows = &mut self.rows[constraint.first as usize..][..constraint.count as usize];
             let mut u = constraint.bodies.map(|body| bodies.scaled_velocity(body));
@@ -339,7 +408,7 @@ impl Joints {
 
     /// Number of rows.
     pub fn row_count(&self) -> usize {
-        self.rows.len()
+        self.rows.len() + self.constraints.iter().map(|c| usize::from(c.carried)).sum::<usize>()
     }
 
     /// Keeps the impulses for the next step.
@@ -348,9 +417,13 @@ impl Joints {
             return;
         }
         memory.resize(joints.capacity(), JointMemory::default());
-        for constraint in &self.constraints {
+        for (i, constraint) in self.constraints.iter().enumerate() {
             let kept = &mut memory[constraint.joint as usize];
             *kept = JointMemory { serial: joints.key_of(constraint.joint).serial, ..JointMemory::default() };
+            if constraint.carried > 0 {
+                kept.impulses[..6].copy_from_slice(&self.kept[i]);
+                continue;
+            }
             for row in &self.rows[constraint.first as usize..][..constraint.count as usize] {
                 if let Some(impulse) = kept.impulses.get_mut(usize::from(row.slot)) {
                     *impulse = row.impulse;
@@ -409,7 +482,7 @@ impl JointRow {
         let bounces = row.restitution_target != 0.0 && row.c == row.restitution_target;
         let velocity = if bounces { row.c } else { row.velocity_target };
         let error = row.position_error;
-        let own = row.kind != RowKind::Motor && row.cfm > step.cfm.max(1e-9);
+        let own = row.kind != RowKind::Motor && is_spring(row.cfm, step);
         let (rate, most, gamma) = if own {
             let erp = if error != 0.0 { (row.c - velocity) * step.h / error } else { step.erp };
             let part = Softness { erp, cfm: row.cfm }.at_substep(context.substeps);

@@ -6,172 +6,35 @@
 //! (J̃ J̃ᵀ + Γ) Δλ = −(J̃ ũ − target − bias + Γ λ)
 //! ```
 //!
-//! Γ holds the CFM of springs and, for all rows, 10⁻⁶ of the diagonal, by which rows that say the same share the load. Cholesky's
-//! factor is backward stable: what is left of the right side is of the size of rounding, whatever the condition, and each sweep begins with what
+//! Γ holds the CFM of springs and, for all rows, 10⁻⁶ of the diagonal, by which rows that say the same share the load. The
+//! factorisation is backward stable: what is left of the right side is of the size of rounding, whatever the condition, and each sweep begins with what
 //! is left.
 //!
 //! Rows with bounds (stops, motors) that hold take part like the others; those at a bound leave the equations, their impulse fixed. Which
 //! is which is found by trying: rows that end beyond a bound are put there, rows at a bound that ought to give way are freed, and the
 //! factor is made again.
 
-use super::factor::Factor;
-use super::shape::Shape;
+use super::carry::{self, Motion, Rates, Start};
+use super::factor::{Block, Factor};
+use super::plan::{NODE, Plan};
+use super::row::{Bound, LaneRow, Role, SOFTNESS, Written, angular, linear};
+use super::shape::{JointEnds, Shape};
+use super::triple::{add, cross, dot, over, scaled, unscaled};
 use crate::arena::NIL;
 use crate::solve::substep::joints::{JointConstraint, JointRow, Joints};
 use core::cell::Cell;
-use ferrode_math::Vector3;
 use ferrode_math::simd::{Lanes, Mask, NO_RECORD, Record};
 
-/// Part of the diagonal that is added to it.
-const SOFTNESS: f32 = 1e-6;
-/// Velocity, in m/s or rad/s, by which a row has to strive away from its bound to be freed.
-const RELEASE: f32 = 1e-4;
 /// Trials in which rows may be freed; after them rows are only put to their bounds.
 const FREEING: usize = 6;
 /// Most trials.
 const TRIALS: usize = 16;
 
-/// The same row of several joints.
-#[derive(Clone, Copy, Debug)]
-struct LaneRow<L: Lanes> {
-    jacobian: [[L::Block; 6]; 2],
-    target: L::Block,
-    /// In the biased and the relaxing pass.
-    bias: [L::Block; 2],
-    /// Error of position, of rows without bounds that are no springs.
-    error: L::Block,
-    gamma: L::Block,
-    lo: L::Block,
-    hi: L::Block,
-    impulse: L::Block,
-    /// What is added to the diagonal beside γ.
-    softness: L,
-    /// 1 where the row takes part, 0 where its impulse is fixed to the next.
-    free: L,
-    fixed: L,
-    bounded: bool,
-    spring: bool,
-}
-
-impl<L: Lanes> LaneRow<L> {
-    fn none() -> Self {
-        let (zero, one) = (L::ZERO.store(), L::ONE);
-        Self {
-            jacobian: [[zero; 6]; 2],
-            target: zero,
-            bias: [zero; 2],
-            error: zero,
-            gamma: zero,
-            lo: L::splat(f32::NEG_INFINITY).store(),
-            hi: L::splat(f32::INFINITY).store(),
-            impulse: zero,
-            softness: L::ZERO,
-            free: one,
-            fixed: L::ZERO,
-            bounded: false,
-            spring: false,
-        }
-    }
-
-    #[inline(always)]
-    fn set(&mut self, lane: usize, row: &JointRow) {
-        for (to, from) in self.jacobian.iter_mut().zip(&row.jacobian) {
-            for (to, from) in to.iter_mut().zip(from) {
-                to.as_mut()[lane] = *from;
-            }
-        }
-        self.target.as_mut()[lane] = row.target;
-        self.bias[0].as_mut()[lane] = row.bias;
-        self.bias[1].as_mut()[lane] = if row.spring { row.bias } else { 0.0 };
-        self.error.as_mut()[lane] = row.error;
-        self.gamma.as_mut()[lane] = row.gamma;
-        self.lo.as_mut()[lane] = row.lo;
-        self.hi.as_mut()[lane] = row.hi;
-        self.impulse.as_mut()[lane] = row.impulse;
-        self.bounded |= row.lo > f32::NEG_INFINITY || row.hi < f32::INFINITY;
-        self.spring |= row.spring;
-    }
-
-    #[inline(always)]
-    fn jacobian(&self) -> [[L; 6]; 2] {
-        [load6(&self.jacobian[0]), load6(&self.jacobian[1])]
-    }
-
-    /// Scales a Jacobian by the bodies' records of scales.
-    #[inline(always)]
-    fn scale(&mut self, scales: [&[L; 8]; 2]) {
-        for (j, s) in self.jacobian.iter_mut().zip(scales) {
-            let x = load6::<L>(j);
-            *j = [
-                (s[0] * x[0]).store(),
-                (s[0] * x[1]).store(),
-                (s[0] * x[2]).store(),
-                (s[1] * x[3] + s[2] * x[4] + s[4] * x[5]).store(),
-                (s[3] * x[4] + s[5] * x[5]).store(),
-                (s[6] * x[5]).store(),
-            ];
-        }
-    }
-
-    /// J̃ ũ.
-    #[inline(always)]
-    fn velocity(&self, u: [&[L; 6]; 2]) -> L {
-        dot6(&load6(&self.jacobian[0]), u[0]) + dot6(&load6(&self.jacobian[1]), u[1])
-    }
-
-    /// What is left of J̃ ũ − target − bias + Γ λ at an impulse λ.
-    #[inline(always)]
-    fn residual(&self, mode: Mode, velocity: L, impulse: L) -> L {
-        let wanted = L::load(&self.target) + L::load(&self.bias[usize::from(mode == Mode::Relax)]);
-        velocity - wanted + (L::load(&self.gamma) + self.softness) * impulse
-    }
-
-    #[inline(always)]
-    fn clamp(&self, x: L) -> L {
-        x.max(L::load(&self.lo)).min(L::load(&self.hi))
-    }
-
-    /// Where an impulse x at a bound and what is left of the row's equation ask for the row to give way.
-    #[inline(always)]
-    fn gives_way(&self, x: L, residual: L) -> L::Mask {
-        let (lo, hi) = (L::load(&self.lo), L::load(&self.hi));
-        let from_lo = x.le(lo) & residual.lt(L::splat(-RELEASE));
-        let from_hi = hi.le(x) & L::splat(RELEASE).lt(residual);
-        lo.lt(hi) & (from_lo | from_hi)
-    }
-
-    /// Applies impulses along the row. `yields`: the part of their torques that turns each body.
-    #[inline(always)]
-    fn push(&self, impulse: L, ends: [u32; 2], yields: &[L], velocities: &mut [[L; 6]]) {
-        for (j, body) in self.jacobian.iter().zip(ends) {
-            let (j, body) = (load6::<L>(j), body as usize);
-            let turning = impulse * yields[body];
-            let u = &mut velocities[body];
-            for k in 0..3 {
-                u[k] += j[k] * impulse;
-                u[k + 3] += j[k + 3] * turning;
-            }
-        }
-    }
-
-    /// The Jacobian with the angular parts as they turn the bodies.
-    #[inline(always)]
-    fn response(&self, yields: [&L; 2]) -> [[L; 6]; 2] {
-        let mut j = self.jacobian();
-        for (j, y) in j.iter_mut().zip(yields) {
-            for x in &mut j[3..] {
-                *x *= *y;
-            }
-        }
-        j
-    }
-}
-
 /// What a sweep does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::solve::substep) enum Mode {
-    /// Solves, with velocities that correct errors of position.
-    Biased,
+    /// Solves, with velocities that correct errors of position, for bodies that move with them for so many seconds then.
+    Biased(f32),
     /// Solves for velocities alone.
     Relax,
     /// Moves the bodies so that errors of position vanish, but for what is of second order in them: a step of Newton's method, with the
@@ -179,19 +42,29 @@ pub(in crate::solve::substep) enum Mode {
     Project,
 }
 
+/// The same joint of several articulations.
+#[derive(Clone, Copy, Debug)]
+struct LaneJoint<L> {
+    /// Its bodies; the last one stands for all that no force moves.
+    ends: JointEnds,
+    /// Its first row, and its nodes.
+    first: usize,
+    nodes: usize,
+    linear: Linear<L>,
+}
+
+/// The linear parts of a joint's scaled Jacobians.
+#[derive(Clone, Copy, Debug)]
+enum Linear<L> {
+    /// The first three rows hold two points together along x, y and z, others turn only: the bodies' scales.
+    Points([L; 2]),
+    /// Any, from this place in the list.
+    Any(usize),
+}
+
 #[inline(always)]
-fn both<T>(list: &[T], ends: [u32; 2]) -> [&T; 2] {
+fn both<T>(list: &[T], ends: JointEnds) -> [&T; 2] {
     [&list[ends[0] as usize], &list[ends[1] as usize]]
-}
-
-#[inline(always)]
-fn load6<L: Lanes>(b: &[L::Block; 6]) -> [L; 6] {
-    [L::load(&b[0]), L::load(&b[1]), L::load(&b[2]), L::load(&b[3]), L::load(&b[4]), L::load(&b[5])]
-}
-
-#[inline(always)]
-fn dot6<L: Lanes>(a: &[L; 6], b: &[L; 6]) -> L {
-    (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) + (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 }
 
 /// Articulations of one shape, as many as there are lanes or fewer.
@@ -204,20 +77,32 @@ pub(super) struct Batch<L: Lanes> {
     bodies: Vec<L::Index>,
     /// Their joints among the constraints, in the order of elimination, lane by lane; `NIL` for lanes that are left.
     joints: Vec<u32>,
+    list: Vec<LaneJoint<L>>,
+    starts: Vec<Start<L>>,
     rows: Vec<LaneRow<L>>,
-    /// The rows that have bounds, and their joints.
-    bounded: Vec<[u32; 2]>,
+    /// Linear parts of rows, of joints where these are not known by themselves.
+    linear: Vec<[[L; 3]; 2]>,
+    /// Whether all rows of a node are without bounds and are no springs.
+    plain: Vec<bool>,
+    bounds: Vec<Bound<L>>,
+    plan: Plan,
     factor: Factor<L>,
-    /// Whether the factor has to be made, and whether there are rows of a substep before.
+    /// Whether the articulations are others than those that the plan was made for.
+    fresh: bool,
+    /// Whether the factor has to be made.
     stale: bool,
-    written: bool,
     /// Velocities before the sweep and within it; the last body stands for all that no force moves.
     before: Vec<[L; 6]>,
     velocities: Vec<[L; 6]>,
     scales: Vec<[L; 8]>,
-    /// The part of a torque that turns each body: 1 but for links under high tension.
-    yields: Vec<L>,
-    changes: Vec<L>,
+    /// Inverses of the diagonal of the scales of rotation.
+    unscales: Vec<[L; 3]>,
+    /// √y and its inverse, with the part y of a torque that turns each body: 1 but for links under high tension. In here the bodies'
+    /// scales of rotation have √y in them.
+    yields: Vec<[L; 2]>,
+    motions: Vec<Motion<L>>,
+    /// By nodes: right side, then change of impulses.
+    changes: Vec<[L; 3]>,
 }
 
 impl<L: Lanes> Batch<L> {
@@ -228,15 +113,22 @@ impl<L: Lanes> Batch<L> {
             members: 0,
             bodies: Vec::new(),
             joints: Vec::new(),
+            list: Vec::new(),
+            starts: Vec::new(),
             rows: Vec::new(),
-            bounded: Vec::new(),
+            linear: Vec::new(),
+            plain: Vec::new(),
+            bounds: Vec::new(),
+            plan: Plan::default(),
             factor: Factor::default(),
+            fresh: true,
             stale: true,
-            written: false,
             before: Vec::new(),
             velocities: Vec::new(),
             scales: Vec::new(),
+            unscales: Vec::new(),
             yields: Vec::new(),
+            motions: Vec::new(),
             changes: Vec::new(),
         }
     }
@@ -251,7 +143,7 @@ impl<L: Lanes> Batch<L> {
         self.bodies.resize(shape.bodies, nobody);
         self.joints.clear();
         self.joints.resize(shape.order.len() * L::LANES, NIL);
-        self.written = false;
+        self.fresh = true;
     }
 
     /// Adds an articulation in the next lane.
@@ -266,47 +158,197 @@ impl<L: Lanes> Batch<L> {
         }
     }
 
-    /// Takes over the rows of a substep, with their impulses: these act along the new rows in place of those before along the old.
+    /// Begins a step of substeps of `h` seconds: takes the joints over, and applies the impulses that they start with.
     #[inline(always)]
-    pub fn load(
+    pub fn begin(
         &mut self,
         shape: &Shape,
         joints: &Joints,
-        h: Option<f32>,
+        h: f32,
         scales: &[Cell<Record>],
         velocities: &[Cell<Record>],
     ) {
-        let first = !self.written;
-        if h.is_some() {
-            self.gather(velocities);
+        self.scales.clear();
+        for index in &self.bodies {
+            self.scales.push(L::gather(scales, index));
         }
-        let Self { factor, before, bodies, yields, .. } = self;
-        if !first {
-            for joint in 0..shape.ends.len() {
-                for row in &self.rows[factor.offsets[joint] as usize..factor.offsets[joint + 1] as usize] {
-                    row.push(-L::load(&row.impulse), shape.ends[joint], yields, before);
-                }
+        self.scales.push([L::ZERO; 8]);
+        self.yields.clear();
+        self.yields.resize(shape.bodies + 1, [L::ONE; 2]);
+        self.motions.clear();
+        self.motions.resize(shape.bodies + 1, Motion::NONE);
+        self.take(shape, joints, true);
+        self.feel_tension(L::splat(h));
+        self.unscales.clear();
+        for s in &self.scales {
+            self.unscales.push([over(L::ONE, s[1]), over(L::ONE, s[3]), over(L::ONE, s[6])]);
+        }
+        self.gather(velocities);
+        self.push_all(L::ONE);
+        self.scatter(velocities);
+    }
+
+    /// Takes the rows to where the bodies have moved; and if they are to `act`, their impulses with them.
+    #[inline(always)]
+    pub fn advance(
+        &mut self,
+        shape: &Shape,
+        joints: &Joints,
+        act: bool,
+        velocities: &[Cell<Record>],
+        deltas: &[Cell<Record>],
+    ) {
+        let mixed = self.starts.len() < self.list.len();
+        if act {
+            self.gather(velocities);
+            if mixed {
+                self.push_all(-L::ONE);
+            }
+        }
+        for (i, index) in self.bodies.iter().enumerate() {
+            let [a, b, c, d, e, f, ..] = L::gather(deltas, index);
+            let inverse = self.yields[i][1];
+            let delta = [a, b, c, d * inverse, e * inverse, f * inverse];
+            self.motions[i] = Motion::new(&delta, &self.scales[i]);
+        }
+        if mixed {
+            self.take(shape, joints, false);
+            if act {
+                self.push_all(L::ONE);
             }
         } else {
-            self.scales.clear();
-            self.scales.extend(bodies.iter().map(|index| L::gather(scales, index)));
-            self.scales.push([L::ZERO; 8]);
+            self.follow(joints.rates, act);
         }
-        self.take(shape, (&joints.constraints, &joints.rows));
-        let Some(h) = h else { return };
-        if first {
-            self.feel_tension(shape, L::splat(h));
+        if act {
+            self.scatter(velocities);
         }
-        for joint in 0..shape.ends.len() {
-            for row in
-                &self.rows[self.factor.offsets[joint] as usize..self.factor.offsets[joint + 1] as usize]
-            {
-                row.push(L::load(&row.impulse), shape.ends[joint], &self.yields, &mut self.before);
+        self.stale = true;
+    }
+
+    /// Writes carried rows, all that there are, anew; the change of their push acts if it is to.
+    #[inline(always)]
+    fn follow(&mut self, rates: Rates, act: bool) {
+        let Self { list, starts, rows, motions, scales, velocities, .. } = self;
+        for (joint, start) in list.iter().zip(starts) {
+            let own = &mut rows[joint.first..][..joint.nodes * NODE];
+            let motions = both(motions, joint.ends);
+            if !act {
+                start.write(rates, motions, both(scales, joint.ends), own);
+                continue;
+            }
+            let mut turned = [[L::ZERO; 3]; 2];
+            for row in own.iter() {
+                for (t, a) in turned.iter_mut().zip(&row.angular) {
+                    for (t, a) in t.iter_mut().zip(a) {
+                        *t -= *a * row.impulse;
+                    }
+                }
+            }
+            start.write(rates, motions, both(scales, joint.ends), own);
+            for row in own.iter() {
+                for (t, a) in turned.iter_mut().zip(&row.angular) {
+                    for (t, a) in t.iter_mut().zip(a) {
+                        *t += *a * row.impulse;
+                    }
+                }
+            }
+            for (t, body) in turned.iter().zip(joint.ends) {
+                for (u, t) in velocities[body as usize][3..].iter_mut().zip(t) {
+                    *u += *t;
+                }
             }
         }
-        core::mem::swap(&mut self.before, &mut self.velocities);
-        self.scatter(velocities);
-        self.written = true;
+    }
+
+    /// Takes over the rows that joints have written, and those that are carried along; of the latter, after the `first` substep, with the impulses
+    /// that they have.
+    #[inline(always)]
+    fn take(&mut self, shape: &Shape, joints: &Joints, first: bool) {
+        let Self { list, starts, rows, linear, plain, bounds, plan, motions, scales, .. } = self;
+        let range = |joint: u32| {
+            let constraint = joints.constraints.get(joint as usize);
+            constraint.map_or(0..0, |c| c.first as usize..(c.first + c.count) as usize)
+        };
+        let mut kept = Vec::new();
+        if !first {
+            let carried = list.iter().filter(|joint| matches!(joint.linear, Linear::Points(_)));
+            kept.extend(
+                carried.flat_map(|joint| &rows[joint.first..][..joint.nodes * NODE]).map(|r| r.impulse),
+            );
+        }
+        let mut kept = kept.into_iter();
+        list.clear();
+        starts.clear();
+        rows.clear();
+        linear.clear();
+        bounds.clear();
+        for (joint, lanes) in self.joints.chunks_exact(L::LANES).enumerate() {
+            let ends = shape.ends[joint];
+            let (first_row, number) = (rows.len(), joint as u32);
+            let scale = both(scales, ends);
+            // All lanes are of one kind: it belongs to the shape.
+            let kind = joints.constraints.get(lanes[0] as usize).map_or(0, |c| c.carried);
+            if kind > 0 {
+                rows.resize(first_row + usize::from(kind), LaneRow::new(Role::Plain));
+                let own = &mut rows[first_row..];
+                let (start, [lo, hi]) =
+                    carry::take(lanes.iter().map(|c| joints.carried.get(*c as usize)), own);
+                if own.len() > NODE {
+                    let driven = lo.lt(hi).any();
+                    own[5].role = if driven { Role::Bounded } else { Role::Filling };
+                    if driven {
+                        bounds.push(Bound {
+                            row: first_row as u32 + 5,
+                            joint: number,
+                            lo,
+                            hi,
+                            fixed: L::ZERO,
+                        });
+                    } else {
+                        own[5].free = L::ZERO;
+                    }
+                }
+                for (row, impulse) in own.iter_mut().zip(&mut kept) {
+                    row.impulse = impulse;
+                }
+                start.write(joints.rates, both(motions, ends), scale, own);
+                starts.push(start);
+                let points = Linear::Points([scale[0][0], scale[1][0]]);
+                list.push(LaneJoint { ends, first: first_row, nodes: own.len() / NODE, linear: points });
+                continue;
+            }
+            let size = lanes.iter().map(|c| range(*c).len()).max().unwrap_or(0);
+            let nodes = size.div_ceil(NODE);
+            list.push(LaneJoint { ends, first: first_row, nodes, linear: Linear::Any(linear.len()) });
+            for i in 0..size {
+                let mut written = Written::<L>::new();
+                for (lane, constraint) in lanes.iter().enumerate() {
+                    if let Some(row) = joints.rows[range(*constraint)].get(i) {
+                        written.set(lane, row);
+                    }
+                }
+                let (mut row, mut pushes, [lo, hi]) = written.row();
+                for side in 0..2 {
+                    row.angular[side] = scaled(scale[side], &row.angular[side]);
+                    for x in &mut pushes[side] {
+                        *x *= scale[side][0];
+                    }
+                }
+                if row.role == Role::Bounded {
+                    bounds.push(Bound { row: rows.len() as u32, joint: number, lo, hi, fixed: L::ZERO });
+                }
+                rows.push(row);
+                linear.push(pushes);
+            }
+            rows.resize(first_row + nodes * NODE, LaneRow::new(Role::Filling));
+            linear.resize(linear.len() + nodes * NODE - size, [[L::ZERO; 3]; 2]);
+        }
+        plain.clear();
+        plain.extend(rows.chunks_exact(NODE).map(|node| node.iter().all(|row| row.role == Role::Plain)));
+        plan.prepare(shape, self.fresh, list.iter().map(|joint| joint.nodes as u32));
+        self.fresh = false;
+        self.changes.resize(plan.nodes(), [L::ZERO; 3]);
+        self.stale = true;
     }
 
     /// Makes bodies harder to turn that are under a tension at which the direction of the forces, that of the start of a substep, would be
@@ -315,80 +357,73 @@ impl<L: Lanes> Batch<L> {
     /// A force F at an arm r turns a body of inertia I back with ω² = F r/I; h²ω² may not be much larger than 1, the limit being 4. Of the joint's rows
     /// along unit directions e, Σ|r × e|² is 2r², and Σ|S⁻¹-scaled r × e|² over it the mean inverse inertia about axes across r.
     #[inline(always)]
-    fn feel_tension(&mut self, shape: &Shape, h: L) {
-        let Self { rows, factor, scales, yields, .. } = self;
-        yields.clear();
-        yields.resize(shape.bodies + 1, L::ZERO);
-        for joint in 0..shape.ends.len() {
-            let own = &rows[factor.offsets[joint] as usize..factor.offsets[joint + 1] as usize];
-            for (side, body) in shape.ends[joint].iter().enumerate() {
-                let s = &scales[*body as usize];
-                let over = |x: L, d: L| L::select(L::ZERO.lt(d), x / d, L::ZERO);
+    fn feel_tension(&mut self, h: L) {
+        let Self { list, rows, linear, scales, yields, .. } = self;
+        let mut tight = vec![L::ZERO; yields.len()];
+        for joint in list.iter() {
+            let own = &rows[joint.first..][..joint.nodes * NODE];
+            for (side, body) in joint.ends.into_iter().enumerate() {
+                let s = &scales[body as usize];
                 let (mut force, mut arms, mut turns) = ([L::ZERO; 3], L::ZERO, L::ZERO);
-                for row in own {
-                    let j = load6::<L>(&row.jacobian[side]);
-                    let unit = [over(j[0], s[0]), over(j[1], s[0]), over(j[2], s[0])];
-                    let present = unit[0] * unit[0] + unit[1] * unit[1] + unit[2] * unit[2];
+                for (i, row) in own.iter().enumerate() {
+                    let unit = match joint.linear {
+                        Linear::Points(_) => unit_of::<L>(i, s[0]),
+                        Linear::Any(at) => {
+                            let l = &linear[at + i][side];
+                            [over(l[0], s[0]), over(l[1], s[0]), over(l[2], s[0])]
+                        }
+                    };
+                    let present = dot(&unit, &unit);
                     for (f, e) in force.iter_mut().zip(unit) {
-                        *f += e * L::load(&row.impulse);
+                        *f += e * row.impulse;
                     }
                     // Back to r × e.
-                    let z = over(j[5], s[6]);
-                    let y = over(j[4] - s[5] * z, s[3]);
-                    let x = over(j[3] - s[2] * y - s[4] * z, s[1]);
+                    let j = &row.angular[side];
+                    let z = over(j[2], s[6]);
+                    let y = over(j[1] - s[5] * z, s[3]);
+                    let x = over(j[0] - s[2] * y - s[4] * z, s[1]);
                     arms += present * (x * x + y * y + z * z);
-                    turns += present * (j[3] * j[3] + j[4] * j[4] + j[5] * j[5]);
+                    turns += present * dot(j, j);
                 }
-                let force = (force[0] * force[0] + force[1] * force[1] + force[2] * force[2]).sqrt();
-                yields[*body as usize] += over(h * force * turns, (arms + arms).sqrt());
+                tight[body as usize] += over(h * dot(&force, &force).sqrt() * turns, (arms + arms).sqrt());
             }
         }
-        for y in yields {
-            *y = L::select(L::ONE.lt(*y), L::ONE / *y, L::ONE);
-        }
-    }
-
-    /// Rows as the joints have written them, scaled.
-    #[inline(always)]
-    fn take(&mut self, shape: &Shape, (constraints, rows): (&[JointConstraint], &[JointRow])) {
-        let Self { joints, factor, bounded, .. } = self;
-        let range = |joint: u32| {
-            constraints.get(joint as usize).map_or(0..0, |c| c.first as usize..(c.first + c.count) as usize)
-        };
-        let lanes = joints.chunks_exact(L::LANES);
-        let sizes =
-            lanes.clone().map(|l| l.iter().map(|joint| range(*joint).len() as u32).max().unwrap_or(0));
-        factor.reset(shape, sizes);
-        self.rows.clear();
-        bounded.clear();
-        for (joint, lanes) in lanes.enumerate() {
-            let first = self.rows.len();
-            self.rows.resize(first + factor.size(joint), LaneRow::none());
-            let own = &mut self.rows[first..];
-            for (lane, constraint) in lanes.iter().enumerate() {
-                for (to, from) in own.iter_mut().zip(&rows[range(*constraint)]) {
-                    to.set(lane, from);
-                }
+        let mut any = false;
+        for ((y, tight), s) in yields.iter_mut().zip(tight).zip(scales.iter_mut()) {
+            let part = L::select(L::ONE.lt(tight), L::ONE / tight, L::ONE).sqrt();
+            any |= part.lt(L::ONE).any();
+            *y = [part, L::ONE / part];
+            for s in &mut s[1..7] {
+                *s *= part;
             }
-            let ends = shape.ends[joint];
-            for (i, row) in own.iter_mut().enumerate() {
-                row.scale(both(&self.scales, ends));
-                if row.bounded {
-                    bounded.push([(first + i) as u32, joint as u32]);
+        }
+        if any {
+            for joint in list.iter() {
+                for row in &mut rows[joint.first..][..joint.nodes * NODE] {
+                    for (j, body) in row.angular.iter_mut().zip(joint.ends) {
+                        let part = yields[body as usize][0];
+                        *j = [j[0] * part, j[1] * part, j[2] * part];
+                    }
                 }
             }
         }
-        self.stale = true;
     }
 
     /// Gives the impulses back.
-    pub fn store(&self, constraints: &[JointConstraint], rows: &mut [JointRow]) {
-        for (joint, lanes) in self.joints.chunks_exact(L::LANES).enumerate() {
-            let own = &self.rows[self.factor.offsets[joint] as usize..];
+    #[inline(always)]
+    pub fn store(&self, constraints: &[JointConstraint], rows: &mut [JointRow], kept: &mut [[f32; 6]]) {
+        for (joint, lanes) in self.list.iter().zip(self.joints.chunks_exact(L::LANES)) {
+            let own = &self.rows[joint.first..][..joint.nodes * NODE];
             for (lane, constraint) in lanes.iter().enumerate() {
                 let Some(c) = constraints.get(*constraint as usize) else { continue };
+                if c.carried > 0 {
+                    for (to, from) in kept[*constraint as usize].iter_mut().zip(own) {
+                        *to = from.impulse.store().as_ref()[lane];
+                    }
+                    continue;
+                }
                 for (to, from) in rows[c.first as usize..][..c.count as usize].iter_mut().zip(own) {
-                    to.impulse = from.impulse.as_ref()[lane];
+                    to.impulse = from.impulse.store().as_ref()[lane];
                 }
             }
         }
@@ -396,26 +431,34 @@ impl<L: Lanes> Batch<L> {
 
     /// One sweep.
     #[inline(always)]
-    pub fn sweep(&mut self, shape: &Shape, mode: Mode, velocities: &[Cell<Record>], deltas: &[Cell<Record>]) {
+    pub fn sweep(&mut self, mode: Mode, velocities: &[Cell<Record>], deltas: &[Cell<Record>]) {
         let project = mode == Mode::Project;
         if project {
-            self.before.clear();
-            self.before.resize(shape.bodies + 1, [L::ZERO; 6]);
+            self.velocities.clear();
+            self.velocities.resize(self.bodies.len() + 1, [L::ZERO; 6]);
             for row in &mut self.rows {
-                row.free = if row.bounded || row.spring { L::ZERO } else { L::ONE };
-                row.fixed = L::load(&row.impulse);
+                row.free = if row.role == Role::Plain { L::ONE } else { L::ZERO };
             }
-            self.stale = true;
+            for bound in &mut self.bounds {
+                bound.fixed = self.rows[bound.row as usize].impulse;
+            }
+            self.stale |= !self.bounds.is_empty();
         } else {
             self.gather(velocities);
-            self.guess(shape, mode);
+            self.guess(mode);
+        }
+        if !self.bounds.is_empty() {
+            self.before.clone_from(&self.velocities);
         }
         for trial in 0..TRIALS {
             if self.stale {
-                self.factorise(shape);
+                self.factorise();
             }
-            self.solve(shape, mode);
-            if project || self.bounded.is_empty() || !self.correct(shape, mode, trial < FREEING) {
+            if trial > 0 {
+                self.velocities.clone_from(&self.before);
+            }
+            self.solve(mode);
+            if project || self.bounds.is_empty() || !self.correct(mode, trial < FREEING) {
                 break;
             }
             self.stale = true;
@@ -424,8 +467,13 @@ impl<L: Lanes> Batch<L> {
             self.move_bodies(deltas);
             return;
         }
-        for (row, change) in self.rows.iter_mut().zip(&self.changes) {
-            row.impulse = (L::load(&row.impulse) + *change).store();
+        for (node, change) in self.rows.chunks_exact_mut(NODE).zip(&self.changes) {
+            for (row, change) in node.iter_mut().zip(change) {
+                row.impulse += *change;
+            }
+        }
+        if let Mode::Biased(h) = mode {
+            self.bend(h, deltas);
         }
         self.scatter(velocities);
     }
@@ -433,11 +481,13 @@ impl<L: Lanes> Batch<L> {
     /// Adds what was found in place of velocities to the displacements.
     #[inline(always)]
     fn move_bodies(&mut self, deltas: &[Cell<Record>]) {
-        for ((index, step), scales) in self.bodies.iter().zip(&self.velocities).zip(&self.scales) {
+        for (i, index) in self.bodies.iter().enumerate() {
+            let (step, [root, inverse]) = (&self.velocities[i], self.yields[i]);
             let mut delta = L::gather(deltas, index);
-            let curve = curve(&delta, step, scales);
-            for (k, d) in delta.iter_mut().take(6).enumerate() {
-                *d += step[k] + if k < 3 { L::ZERO } else { curve[k - 3] };
+            let curve = curve(&delta, inverse, &angular(step), &self.scales[i], &self.unscales[i]);
+            for k in 0..3 {
+                delta[k] += step[k];
+                delta[k + 3] += (step[k + 3] + curve[k]) * root;
             }
             L::scatter(deltas, index, delta);
         }
@@ -445,14 +495,14 @@ impl<L: Lanes> Batch<L> {
 
     /// Before the bodies move by `h` seconds: adds to their rotation vectors what that motion does to them beside being added.
     #[inline(always)]
-    pub fn bend(&self, h: f32, velocities: &[Cell<Record>], deltas: &[Cell<Record>]) {
+    fn bend(&self, h: f32, deltas: &[Cell<Record>]) {
         let h = L::splat(h);
-        for (index, scales) in self.bodies.iter().zip(&self.scales) {
+        for (i, index) in self.bodies.iter().enumerate() {
+            let ([.., d, e, f], [root, inverse]) = (self.velocities[i], self.yields[i]);
             let mut delta = L::gather(deltas, index);
-            let [a, b, c, d, e, f, ..] = L::gather(velocities, index);
-            let curve = curve(&delta, &[a * h, b * h, c * h, d * h, e * h, f * h], scales);
-            for (d, c) in delta[3..6].iter_mut().zip(curve) {
-                *d += c;
+            let curve = curve(&delta, inverse, &[d * h, e * h, f * h], &self.scales[i], &self.unscales[i]);
+            for k in 0..3 {
+                delta[k + 3] += curve[k] * root;
             }
             L::scatter(deltas, index, delta);
         }
@@ -460,150 +510,366 @@ impl<L: Lanes> Batch<L> {
 
     #[inline(always)]
     fn gather(&mut self, velocities: &[Cell<Record>]) {
-        self.before.clear();
-        for index in &self.bodies {
+        self.velocities.clear();
+        for (index, [_, inverse]) in self.bodies.iter().zip(&self.yields) {
             let [a, b, c, d, e, f, ..] = L::gather(velocities, index);
-            self.before.push([a, b, c, d, e, f]);
+            self.velocities.push([a, b, c, d * *inverse, e * *inverse, f * *inverse]);
         }
-        self.before.push([L::ZERO; 6]);
+        self.velocities.push([L::ZERO; 6]);
     }
 
     #[inline(always)]
     fn scatter(&self, velocities: &[Cell<Record>]) {
-        for (index, [a, b, c, d, e, f]) in self.bodies.iter().zip(self.velocities.iter().copied()) {
-            L::scatter(velocities, index, [a, b, c, d, e, f, L::ZERO, L::ZERO]);
+        for ((index, [a, b, c, d, e, f]), [root, _]) in
+            self.bodies.iter().zip(&self.velocities).zip(&self.yields)
+        {
+            let numbers = [*a, *b, *c, *d * *root, *e * *root, *f * *root, L::ZERO, L::ZERO];
+            L::scatter(velocities, index, numbers);
         }
     }
 
     /// The matrix of the rows that take part, and its factor.
     #[inline(always)]
-    fn factorise(&mut self, shape: &Shape) {
-        let Self { rows, factor, yields, .. } = self;
-        factor.clear();
-        for joint in 0..shape.ends.len() {
-            let size = factor.size(joint);
-            let own = &mut rows[factor.offsets[joint] as usize..][..size];
-            let block = factor.block(joint as u32, size * size);
-            for i in 0..size {
-                let j = own[i].response(both(yields, shape.ends[joint]));
-                let diagonal = own[i].velocity([&j[0], &j[1]]);
-                let row = &mut own[i];
-                row.softness = diagonal * L::splat(SOFTNESS);
-                // A row that is fixed has the equation Δλ = 0.
-                block[i * size + i] =
-                    (diagonal + row.softness + L::load(&row.gamma)) * row.free + (L::ONE - row.free);
-                let free = row.free;
-                for k in 0..i {
-                    block[i * size + k] = own[k].velocity([&j[0], &j[1]]) * free * own[k].free;
+    fn factorise(&mut self) {
+        let Self { list, rows, linear, plain, plan, factor, .. } = self;
+        factor.begin(plan);
+        for (number, (joint, first)) in list.iter().zip(&plan.first).enumerate() {
+            for i in 0..joint.nodes {
+                for j in 0..=i {
+                    let a = node(rows, joint, i);
+                    let b = node(rows, joint, j);
+                    let mut block = if i == j {
+                        add_products(&turning_squares(a, 0), &turning_squares(a, 1))
+                    } else {
+                        add_products(&turning_products(a, b, [0, 0]), &turning_products(a, b, [1, 1]))
+                    };
+                    match joint.linear {
+                        Linear::Points([s, t]) if i == 0 => {
+                            let mass = s * s + t * t;
+                            block = [
+                                block[0] + mass,
+                                block[1],
+                                block[2],
+                                block[3],
+                                block[4] + mass,
+                                block[5],
+                                block[6],
+                                block[7],
+                                block[8] + mass,
+                            ];
+                        }
+                        Linear::Points(_) => {}
+                        Linear::Any(at) => {
+                            for side in 0..2 {
+                                for k in 0..NODE {
+                                    for l in 0..NODE {
+                                        let (a, b) = (&linear[at + i * NODE + k], &linear[at + j * NODE + l]);
+                                        block[k * NODE + l] += dot(&a[side], &b[side]);
+                                    }
+                                }
+                            }
+                        }
+                    }
+                    let (row, column) = (*first as usize + i, *first as usize + j);
+                    if !plain[row] || !plain[column] {
+                        mask(&mut block, a, b);
+                    }
+                    if i == j {
+                        for (k, row) in rows[joint.first + i * NODE..][..NODE].iter_mut().enumerate() {
+                            let diagonal = block[k * NODE + k];
+                            row.softness = diagonal * L::splat(SOFTNESS);
+                            // A row that is fixed has the equation Δλ = 0.
+                            block[k * NODE + k] =
+                                (diagonal + row.softness + row.gamma) * row.free + (L::ONE - row.free);
+                        }
+                    }
+                    factor.blocks[plan.own(number, i, j)] = block;
                 }
             }
         }
-        for product in &shape.products {
-            let rows_of = |(joint, side): (u32, u8)| {
-                let (joint, size) = (joint as usize, factor.size(joint as usize));
-                (&rows[factor.offsets[joint] as usize..][..size], usize::from(side))
-            };
-            let (a, b) = (rows_of(product.a), rows_of(product.b));
-            let columns = b.0.len();
-            let block = factor.block(product.target, a.0.len() * columns);
-            for (row, out) in a.0.iter().zip(block.chunks_exact_mut(columns.max(1))) {
-                let body = shape.ends[product.a.0 as usize][a.1];
-                let j = row.response([&yields[body as usize]; 2])[a.1];
-                for (other, out) in b.0.iter().zip(out) {
-                    *out += dot6(&j, &load6(&other.jacobian[b.1])) * row.free * other.free;
+        for product in &plan.products {
+            let ((p, i, x), (q, j, y)) = (product.a, product.b);
+            let (one, two) = (&list[p as usize], &list[q as usize]);
+            let (i, j, sides) = (i as usize, j as usize, [usize::from(x), usize::from(y)]);
+            let (a, b) = (node(rows, one, i), node(rows, two, j));
+            let mut block = turning_products(a, b, sides);
+            match (one.linear, two.linear) {
+                (Linear::Points(s), Linear::Points(t)) => {
+                    if i == 0 && j == 0 {
+                        let mass = s[sides[0]] * t[sides[1]];
+                        let mass = if x == y { mass } else { -mass };
+                        block = [
+                            block[0] + mass,
+                            block[1],
+                            block[2],
+                            block[3],
+                            block[4] + mass,
+                            block[5],
+                            block[6],
+                            block[7],
+                            block[8] + mass,
+                        ];
+                    }
+                }
+                _ => {
+                    for k in 0..NODE {
+                        for l in 0..NODE {
+                            let a = linear_part(one, linear, i * NODE + k, sides[0]);
+                            let b = linear_part(two, linear, j * NODE + l, sides[1]);
+                            block[k * NODE + l] += dot(&a, &b);
+                        }
+                    }
                 }
             }
+            if !plain[plan.first[p as usize] as usize + i] || !plain[plan.first[q as usize] as usize + j] {
+                mask(&mut block, a, b);
+            }
+            let target = &mut factor.blocks[product.target as usize];
+            *target = if product.again { add_products(target, &block) } else { block };
         }
-        factor.factorise(shape);
+        factor.factorise(plan);
         self.stale = false;
+    }
+
+    /// J̃ ũ of a row.
+    #[inline(always)]
+    fn velocity(&self, bound: &Bound<L>, velocities: &[[L; 6]]) -> L {
+        let joint = &self.list[bound.joint as usize];
+        let (row, u) = (bound.row as usize, both(velocities, joint.ends));
+        let (turning, place) = (self.rows[row].turning(u), row - joint.first);
+        // Rows about the axis of a hinge.
+        if place >= NODE && matches!(joint.linear, Linear::Points(_)) {
+            return turning;
+        }
+        let parts = [linear_part(joint, &self.linear, place, 0), linear_part(joint, &self.linear, place, 1)];
+        turning + (dot(&parts[0], &linear(u[0])) + dot(&parts[1], &linear(u[1])))
     }
 
     /// Guesses which rows with bounds take part, from their impulses and the velocities before the sweep.
     #[inline(always)]
-    fn guess(&mut self, shape: &Shape, mode: Mode) {
-        for [i, joint] in &self.bounded {
-            let row = &mut self.rows[*i as usize];
-            let velocity = row.velocity(both(&self.before, shape.ends[*joint as usize]));
-            let x = L::load(&row.impulse);
-            let inside = L::load(&row.lo).lt(x) & x.lt(L::load(&row.hi));
-            let free = inside | row.gives_way(x, row.residual(mode, velocity, x));
-            let free = L::select(free, L::ONE, L::ZERO);
-            self.stale |= (free.lt(row.free) | row.free.lt(free)).any();
-            (row.free, row.fixed) = (free, row.clamp(x));
-        }
-    }
-
-    /// Solves for the changes of the impulses, and changes the velocities by them.
-    #[inline(always)]
-    fn solve(&mut self, shape: &Shape, mode: Mode) {
-        let Self { rows, bounded, factor, before, yields, velocities, changes, .. } = self;
-        velocities.clear();
-        velocities.extend_from_slice(before);
-        changes.clear();
-        changes.resize(rows.len(), L::ZERO);
-        let fixed = |row: &LaneRow<L>| (row.fixed - L::load(&row.impulse)) * (L::ONE - row.free);
-        for [i, joint] in bounded.iter() {
-            let row = &rows[*i as usize];
-            row.push(fixed(row), shape.ends[*joint as usize], yields, velocities);
-        }
-        let mut i = 0;
-        for joint in 0..shape.ends.len() {
-            let u = both(velocities, shape.ends[joint]);
-            for row in &rows[i..factor.offsets[joint + 1] as usize] {
-                changes[i] = if mode == Mode::Project {
-                    L::load(&row.error) * row.free
-                } else {
-                    -row.residual(mode, row.velocity(u), L::load(&row.impulse)) * row.free
-                };
-                i += 1;
-            }
-        }
-        factor.solve(shape, changes);
-        let mut i = 0;
-        for joint in 0..shape.ends.len() {
-            for row in &rows[i..factor.offsets[joint + 1] as usize] {
-                row.push(changes[i], shape.ends[joint], yields, velocities);
-                i += 1;
-            }
-        }
-        for [i, _] in bounded.iter() {
-            changes[*i as usize] += fixed(&rows[*i as usize]);
+    fn guess(&mut self, mode: Mode) {
+        for i in 0..self.bounds.len() {
+            let mut bound = self.bounds[i];
+            let velocity = self.velocity(&bound, &self.velocities);
+            self.stale |= bound.guess(&mut self.rows[bound.row as usize], mode, velocity);
+            self.bounds[i] = bound;
         }
     }
 
     /// Changes the state of rows that are on the wrong side; whether there were any.
     #[inline(always)]
-    fn correct(&mut self, shape: &Shape, mode: Mode, freeing: bool) -> bool {
+    fn correct(&mut self, mode: Mode, freeing: bool) -> bool {
         let mut wrong = false;
-        for [i, joint] in &self.bounded {
-            let row = &mut self.rows[*i as usize];
-            let velocity = row.velocity(both(&self.velocities, shape.ends[*joint as usize]));
-            let new = L::load(&row.impulse) + self.changes[*i as usize];
-            let takes_part = L::ZERO.lt(row.free);
-            let beyond = takes_part & (new.lt(L::load(&row.lo)) | L::load(&row.hi).lt(new));
-            let mut freed = beyond & !beyond;
-            if freeing {
-                freed = row.gives_way(new, row.residual(mode, velocity, new)) & !takes_part;
-            }
-            wrong |= (beyond | freed).any();
-            row.fixed = L::select(beyond, row.clamp(new), row.fixed);
-            row.free = L::select(beyond, L::ZERO, L::select(freed, L::ONE, row.free));
+        for i in 0..self.bounds.len() {
+            let mut bound = self.bounds[i];
+            let velocity = self.velocity(&bound, &self.velocities);
+            let place = bound.row as usize;
+            let new = self.rows[place].impulse + self.changes[place / NODE][place % NODE];
+            wrong |= bound.correct(&mut self.rows[place], mode, velocity, new, freeing);
+            self.bounds[i] = bound;
         }
         wrong
+    }
+
+    /// Solves for the changes of the impulses, and changes the velocities by them.
+    #[inline(always)]
+    fn solve(&mut self, mode: Mode) {
+        let Self { list, rows, linear, bounds, plan, factor, velocities, changes, .. } = self;
+        for bound in bounds.iter() {
+            let (joint, place) = (&list[bound.joint as usize], bound.row as usize);
+            let mut x = [L::ZERO; NODE];
+            x[place % NODE] = fixed(&rows[place], bound);
+            push(joint, rows, linear, (place - joint.first) / NODE, &x, velocities);
+        }
+        for (joint, first) in list.iter().zip(&plan.first) {
+            let u = both(velocities, joint.ends);
+            for i in 0..joint.nodes {
+                let own = node(rows, joint, i);
+                let x = &mut changes[*first as usize + i];
+                if mode == Mode::Project {
+                    *x = [own[0].error * own[0].free, own[1].error * own[1].free, own[2].error * own[2].free];
+                    continue;
+                }
+                let mut v = [own[0].turning(u), own[1].turning(u), own[2].turning(u)];
+                match joint.linear {
+                    Linear::Points([s, t]) if i == 0 => {
+                        for k in 0..NODE {
+                            v[k] += s * u[0][k] - t * u[1][k];
+                        }
+                    }
+                    Linear::Points(_) => {}
+                    Linear::Any(at) => {
+                        for k in 0..NODE {
+                            let l = &linear[at + i * NODE + k];
+                            v[k] +=
+                                dot(&l[0], &super::row::linear(u[0])) + dot(&l[1], &super::row::linear(u[1]));
+                        }
+                    }
+                }
+                for k in 0..NODE {
+                    x[k] = -own[k].residual(mode, v[k], own[k].impulse) * own[k].free;
+                }
+            }
+        }
+        factor.solve(plan, changes);
+        for (joint, first) in list.iter().zip(&plan.first) {
+            for i in 0..joint.nodes {
+                push(joint, rows, linear, i, &changes[*first as usize + i], velocities);
+            }
+        }
+        for bound in bounds.iter() {
+            let place = bound.row as usize;
+            changes[place / NODE][place % NODE] += fixed(&rows[place], bound);
+        }
+    }
+
+    /// Applies all impulses, times `factor`.
+    #[inline(always)]
+    fn push_all(&mut self, factor: L) {
+        let Self { list, rows, linear, velocities, .. } = self;
+        for joint in list.iter() {
+            for i in 0..joint.nodes {
+                let own = node(rows, joint, i);
+                let x = [own[0].impulse * factor, own[1].impulse * factor, own[2].impulse * factor];
+                push(joint, rows, linear, i, &x, velocities);
+            }
+        }
+    }
+}
+
+/// What a row that does not take part is yet to push.
+#[inline(always)]
+fn fixed<L: Lanes>(row: &LaneRow<L>, bound: &Bound<L>) -> L {
+    (bound.fixed - row.impulse) * (L::ONE - row.free)
+}
+
+/// The rows of a node.
+#[inline(always)]
+fn node<'a, L: Lanes>(rows: &'a [LaneRow<L>], joint: &LaneJoint<L>, i: usize) -> &'a [LaneRow<L>] {
+    &rows[joint.first + i * NODE..][..NODE]
+}
+
+/// The unit vector along which row i holds points together, on a body that moves.
+#[inline(always)]
+fn unit_of<L: Lanes>(i: usize, scale: L) -> [L; 3] {
+    let mut unit = [L::ZERO; 3];
+    if i < NODE {
+        unit[i] = L::select(L::ZERO.lt(scale), L::ONE, L::ZERO);
+    }
+    unit
+}
+
+/// The linear part of a row's scaled Jacobian.
+#[inline(always)]
+fn linear_part<L: Lanes>(joint: &LaneJoint<L>, linear: &[[[L; 3]; 2]], i: usize, side: usize) -> [L; 3] {
+    match joint.linear {
+        Linear::Any(at) => linear[at + i][side],
+        Linear::Points(scales) => {
+            let mut part = [L::ZERO; 3];
+            if i < NODE {
+                part[i] = if side == 0 { scales[0] } else { -scales[1] };
+            }
+            part
+        }
+    }
+}
+
+/// Applies the impulses of a node.
+#[inline(always)]
+fn push<L: Lanes>(
+    joint: &LaneJoint<L>,
+    rows: &[LaneRow<L>],
+    linear: &[[[L; 3]; 2]],
+    i: usize,
+    x: &[L; 3],
+    velocities: &mut [[L; 6]],
+) {
+    let own = node(rows, joint, i);
+    for (side, body) in joint.ends.into_iter().enumerate() {
+        let u = &mut velocities[body as usize];
+        for k in 0..3 {
+            u[k + 3] += own[0].angular[side][k] * x[0]
+                + own[1].angular[side][k] * x[1]
+                + own[2].angular[side][k] * x[2];
+        }
+        match joint.linear {
+            Linear::Points(scales) if i == 0 => {
+                let s = if side == 0 { scales[0] } else { -scales[1] };
+                for k in 0..3 {
+                    u[k] += s * x[k];
+                }
+            }
+            Linear::Points(_) => {}
+            Linear::Any(at) => {
+                let l = &linear[at + i * NODE..][..NODE];
+                for k in 0..3 {
+                    u[k] += l[0][side][k] * x[0] + l[1][side][k] * x[1] + l[2][side][k] * x[2];
+                }
+            }
+        }
+    }
+}
+
+/// Products of the angular parts of two nodes, for a body at these ends of theirs.
+#[inline(always)]
+fn turning_products<L: Lanes>(a: &[LaneRow<L>], b: &[LaneRow<L>], sides: [usize; 2]) -> Block<L> {
+    let (x, y) = (sides[0] & 1, sides[1] & 1);
+    let a = [&a[0].angular[x], &a[1].angular[x], &a[2].angular[x]];
+    let b = [&b[0].angular[y], &b[1].angular[y], &b[2].angular[y]];
+    [
+        dot(a[0], b[0]),
+        dot(a[0], b[1]),
+        dot(a[0], b[2]),
+        dot(a[1], b[0]),
+        dot(a[1], b[1]),
+        dot(a[1], b[2]),
+        dot(a[2], b[0]),
+        dot(a[2], b[1]),
+        dot(a[2], b[2]),
+    ]
+}
+
+/// The lower triangle of those of a node with itself.
+#[inline(always)]
+fn turning_squares<L: Lanes>(a: &[LaneRow<L>], side: usize) -> Block<L> {
+    let side = side & 1;
+    let [a, b, c] = [&a[0].angular[side], &a[1].angular[side], &a[2].angular[side]];
+    let zero = L::ZERO;
+    [dot(a, a), zero, zero, dot(b, a), dot(b, b), zero, dot(c, a), dot(c, b), dot(c, c)]
+}
+
+#[inline(always)]
+fn add_products<L: Lanes>(a: &Block<L>, b: &Block<L>) -> Block<L> {
+    let mut sum = *a;
+    for (s, b) in sum.iter_mut().zip(b) {
+        *s += *b;
+    }
+    sum
+}
+
+/// Takes rows that don't take part out of a block.
+#[inline(always)]
+fn mask<L: Lanes>(block: &mut Block<L>, a: &[LaneRow<L>], b: &[LaneRow<L>]) {
+    for k in 0..NODE {
+        for l in 0..NODE {
+            block[k * NODE + l] = block[k * NODE + l] * a[k].free * b[l].free;
+        }
     }
 }
 
 /// The rotation vector of a rotation by θ followed by one by the small δ is θ + δ + δ × θ/2 + θ × (θ × δ)/12 (Baker, Campbell and
-/// Hausdorff; the next term is θ³ × δ/720): the last two, with all in scaled coordinates.
+/// Hausdorff; the next term is θ³ × δ/720): the last two, with all in scaled coordinates, θ times `inverse`; `over`: 1/S of S's diagonal.
 #[inline(always)]
-fn curve<L: Lanes>(delta: &[L; 8], step: &[L; 6], s: &[L; 8]) -> [L; 3] {
-    let unscaled = |x: &[L]| {
-        Vector3::new(s[1] * x[0], s[2] * x[0] + s[3] * x[1], s[4] * x[0] + s[5] * x[1] + s[6] * x[2])
-    };
-    let (theta, small) = (unscaled(&delta[3..6]), unscaled(&step[3..6]));
-    let d = small.cross(theta) * L::splat(0.5) + theta.cross(theta.cross(small)) * L::splat(1.0 / 12.0);
-    let over = |x: L, d: L| L::select(L::ZERO.lt(d), x / d, L::ZERO);
-    let a = over(d.x, s[1]);
-    let b = over(d.y - s[2] * a, s[3]);
-    [a, b, over(d.z - s[4] * a - s[5] * b, s[6])]
+fn curve<L: Lanes>(delta: &[L; 8], inverse: L, step: &[L; 3], s: &[L; 8], over: &[L; 3]) -> [L; 3] {
+    let theta = unscaled(s, &[delta[3] * inverse, delta[4] * inverse, delta[5] * inverse]);
+    let small = unscaled(s, step);
+    let (one, two) = (cross(&small, &theta), cross(&theta, &cross(&theta, &small)));
+    let (half, twelfth) = (L::splat(0.5), L::splat(1.0 / 12.0));
+    let d = add(
+        &[one[0] * half, one[1] * half, one[2] * half],
+        &[two[0] * twelfth, two[1] * twelfth, two[2] * twelfth],
+    );
+    let a = d[0] * over[0];
+    let b = (d[1] - s[2] * a) * over[1];
+    [a, b, (d[2] - s[4] * a - s[5] * b) * over[2]]
 }

@@ -1,120 +1,59 @@
-//! The factor of an articulation's matrix: K = L Lᵀ in blocks, for articulations of one shape side by side.
+//! The factor of an articulation's matrix: K = L D Lᵀ in blocks of three by three, for articulations of one shape side by side.
 
-use super::shape::Shape;
+use super::plan::Plan;
 use ferrode_math::simd::Lanes;
 
-/// The factor, and the sizes of its blocks.
+/// Three by three, by rows.
+pub(super) type Block<L> = [L; 9];
+
+/// K, and then its factor. Of a block on the diagonal that holds the inverses of D on its diagonal, and L below.
 #[derive(Clone, Debug)]
 pub(super) struct Factor<L> {
-    /// Rows of each joint, in the order of elimination, and where they begin.
-    sizes: Vec<u32>,
-    pub offsets: Vec<u32>,
-    /// Where each block begins: those on the diagonal, then those below, each by its rows.
-    starts: Vec<u32>,
-    values: Vec<L>,
-    /// Inverses of the diagonal.
-    inverses: Vec<L>,
+    pub blocks: Vec<Block<L>>,
+    /// The blocks of a column times D.
+    column: Vec<Block<L>>,
 }
 
 impl<L> Default for Factor<L> {
     fn default() -> Self {
-        Self {
-            sizes: Vec::new(),
-            offsets: Vec::new(),
-            starts: Vec::new(),
-            values: Vec::new(),
-            inverses: Vec::new(),
-        }
+        Self { blocks: Vec::new(), column: Vec::new() }
     }
 }
 
 impl<L: Lanes> Factor<L> {
-    /// Sizes the blocks.
-    pub fn reset(&mut self, shape: &Shape, sizes: impl Iterator<Item = u32>) {
-        self.sizes.clear();
-        self.sizes.extend(sizes);
-        self.offsets.clear();
-        let mut sum = 0;
-        self.offsets.push(0);
-        for size in &self.sizes {
-            sum += size;
-            self.offsets.push(sum);
+    /// Makes room for K, of which the blocks that fill in are zero.
+    #[inline(always)]
+    pub fn begin(&mut self, plan: &Plan) {
+        self.blocks.resize(plan.nodes() + plan.rows.len(), [L::ZERO; 9]);
+        for block in &plan.fill {
+            self.blocks[*block as usize] = [L::ZERO; 9];
         }
-        self.starts.clear();
-        let mut at = 0;
-        for size in &self.sizes {
-            self.starts.push(at);
-            at += size * size;
-        }
-        for column in 0..self.sizes.len() {
-            for row in &shape.rows[shape.start[column] as usize..shape.start[column + 1] as usize] {
-                self.starts.push(at);
-                at += self.sizes[*row as usize] * self.sizes[column];
-            }
-        }
-        self.values.resize(at as usize, L::ZERO);
-        self.inverses.resize(sum as usize, L::ZERO);
     }
 
-    /// Sets K to zero.
+    /// K = L D Lᵀ, in place. A row that nothing moves has a zero pivot, and no part in the inverse.
     #[inline(always)]
-    pub fn clear(&mut self) {
-        self.values.fill(L::ZERO);
-    }
-
-    /// A block, by its rows.
-    #[inline(always)]
-    pub fn block(&mut self, number: u32, len: usize) -> &mut [L] {
-        &mut self.values[self.starts[number as usize] as usize..][..len]
-    }
-
-    /// Number of rows of a joint.
-    #[inline(always)]
-    pub fn size(&self, joint: usize) -> usize {
-        self.sizes[joint] as usize
-    }
-
-    /// K = L Lᵀ, in place. A row that nothing moves has a zero pivot, and no part in the inverse.
-    #[inline(always)]
-    pub fn factorise(&mut self, shape: &Shape) {
-        let n = self.sizes.len();
+    pub fn factorise(&mut self, plan: &Plan) {
+        let n = plan.nodes();
+        let Self { blocks, column } = self;
         for c in 0..n {
-            let size = self.size(c);
-            let range = shape.start[c] as usize..shape.start[c + 1] as usize;
-            let inverse = &mut self.inverses[self.offsets[c] as usize..][..size];
-            let own = self.starts[c] as usize;
-            if range.is_empty() {
-                cholesky(&mut self.values[own..][..size * size], inverse, size);
-                continue;
+            let pivot = decompose(&blocks[c]);
+            blocks[c] = pivot;
+            let (start, end) = (plan.start[c] as usize, plan.start[c + 1] as usize);
+            // A column changes blocks on the diagonal, and those of later columns, which lie behind its own.
+            let (diagonal, below) = blocks.split_at_mut(n);
+            let (below, later) = below.split_at_mut(end);
+            let below = &mut below[start..];
+            column.resize(below.len().max(column.len()), [L::ZERO; 9]);
+            for (block, times_d) in below.iter_mut().zip(column.iter_mut()) {
+                solve_right(block, times_d, &pivot);
             }
-            // The blocks below a column's diagonal lie behind all of these.
-            let (head, tail) = self.values.split_at_mut(self.starts[n] as usize);
-            let diagonal = &mut head[own..][..size * size];
-            cholesky(diagonal, inverse, size);
-            for block in range {
-                let rows = self.sizes[shape.rows[block] as usize] as usize;
-                let start = (self.starts[n + block] - self.starts[n]) as usize;
-                solve_right(&mut tail[start..][..rows * size], diagonal, inverse, size);
-            }
-            for update in &shape.updates[shape.update_start[c] as usize..shape.update_start[c + 1] as usize] {
-                let height = |block: u32| self.sizes[shape.rows[block as usize - n] as usize] as usize;
-                let (rows, columns) = (height(update.a), height(update.b));
-                let target = self.starts[update.target as usize] as usize;
-                let (a, b) =
-                    (self.starts[update.a as usize] as usize, self.starts[update.b as usize] as usize);
-                if (update.target as usize) < n {
-                    let (head, tail) = self.values.split_at_mut(self.starts[n] as usize);
-                    let tail_a = &tail[a - self.starts[n] as usize..][..rows * size];
-                    subtract_lower(&mut head[target..][..rows * rows], tail_a, rows, size);
+            for update in &plan.updates[plan.update_start[c] as usize..plan.update_start[c + 1] as usize] {
+                let (a, b) = (&column[update.a as usize], &below[update.b as usize]);
+                let target = update.target as usize;
+                if target < n {
+                    subtract_lower(&mut diagonal[target], a, b);
                 } else {
-                    // What a column changes lies behind its own blocks.
-                    let (head, tail) = self.values.split_at_mut(target);
-                    subtract(
-                        &mut tail[..rows * columns],
-                        &head[a..][..rows * size],
-                        &head[b..][..columns * size],
-                        size,
-                    );
+                    subtract(&mut later[target - n - end], a, b);
                 }
             }
         }
@@ -122,57 +61,36 @@ impl<L: Lanes> Factor<L> {
 
     /// x = K⁻¹ x.
     #[inline(always)]
-    pub fn solve(&self, shape: &Shape, x: &mut [L]) {
-        let n = self.sizes.len();
+    pub fn solve(&self, plan: &Plan, x: &mut [[L; 3]]) {
+        let n = plan.nodes();
         for c in 0..n {
-            let size = self.size(c);
-            let at = self.offsets[c] as usize;
-            let (head, tail) = x.split_at_mut(at + size);
-            let own = &mut head[at..];
-            let l = &self.values[self.starts[c] as usize..][..size * size];
-            let inverse = &self.inverses[at..][..size];
-            for i in 0..size {
-                let mut sum = own[i];
-                for (l, y) in l[i * size..][..i].iter().zip(&own[..i]) {
-                    sum -= *l * *y;
-                }
-                own[i] = without_trifles(sum * inverse[i]);
-            }
-            for block in shape.start[c] as usize..shape.start[c + 1] as usize {
-                let row = shape.rows[block] as usize;
-                let target = &mut tail[self.offsets[row] as usize - at - size..][..self.size(row)];
-                let values = &self.values[self.starts[n + block] as usize..][..target.len() * size];
-                for (t, row) in target.iter_mut().zip(values.chunks_exact(size.max(1))) {
-                    for (v, y) in row.iter().zip(own.iter()) {
-                        *t -= *v * *y;
-                    }
+            let l = &self.blocks[c];
+            let [a, b, d] = x[c];
+            let b = b - l[3] * a;
+            let y = without_trifles([a, b, d - (l[6] * a + l[7] * b)]);
+            x[c] = y;
+            let range = plan.start[c] as usize..plan.start[c + 1] as usize;
+            for (m, row) in self.blocks[n + range.start..n + range.end].iter().zip(&plan.rows[range]) {
+                let t = &mut x[*row as usize];
+                for i in 0..3 {
+                    t[i] -= m[3 * i] * y[0] + m[3 * i + 1] * y[1] + m[3 * i + 2] * y[2];
                 }
             }
         }
         for c in (0..n).rev() {
-            let size = self.size(c);
-            let at = self.offsets[c] as usize;
-            let (head, tail) = x.split_at_mut(at + size);
-            let own = &mut head[at..];
-            for block in shape.start[c] as usize..shape.start[c + 1] as usize {
-                let row = shape.rows[block] as usize;
-                let source = &tail[self.offsets[row] as usize - at - size..][..self.size(row)];
-                let values = &self.values[self.starts[n + block] as usize..][..source.len() * size];
-                for (s, row) in source.iter().zip(values.chunks_exact(size.max(1))) {
-                    for (v, y) in row.iter().zip(own.iter_mut()) {
-                        *y -= *v * *s;
-                    }
+            let l = &self.blocks[c];
+            let [a, b, d] = x[c];
+            let mut y = [a * l[0], b * l[4], d * l[8]];
+            let range = plan.start[c] as usize..plan.start[c + 1] as usize;
+            for (m, row) in self.blocks[n + range.start..n + range.end].iter().zip(&plan.rows[range]) {
+                let t = &x[*row as usize];
+                for i in 0..3 {
+                    y[i] -= m[i] * t[0] + m[3 + i] * t[1] + m[6 + i] * t[2];
                 }
             }
-            let l = &self.values[self.starts[c] as usize..][..size * size];
-            let inverse = &self.inverses[at..][..size];
-            for i in (0..size).rev() {
-                let y = without_trifles(own[i] * inverse[i]);
-                own[i] = y;
-                for (l, o) in l[i * size..][..i].iter().zip(own[..i].iter_mut()) {
-                    *o -= *l * y;
-                }
-            }
+            let [a, b, d] = without_trifles(y);
+            let b = b - l[7] * d;
+            x[c] = [a - (l[3] * b + l[6] * d), b, d];
         }
     }
 }
@@ -180,76 +98,130 @@ impl<L: Lanes> Factor<L> {
 /// Rounds numbers below 1e-33 to zero. Down a long chain, impulses fade to numbers that processors take a hundred times as long to
 /// compute with.
 #[inline(always)]
-fn without_trifles<L: Lanes>(x: L) -> L {
+fn without_trifles<L: Lanes>(x: [L; 3]) -> [L; 3] {
     let k = L::splat(1e-26);
-    x + k - k
+    [x[0] + k - k, x[1] + k - k, x[2] + k - k]
 }
 
-/// h = L Lᵀ in place, by rows of the lower triangle, with the inverses of the diagonal.
 #[inline(always)]
-fn cholesky<L: Lanes>(h: &mut [L], inverse: &mut [L], n: usize) {
-    let (h, inverse) = (&mut h[..n * n], &mut inverse[..n]);
-    for i in 0..n {
+fn inverse<L: Lanes>(x: L) -> L {
+    L::select(L::ZERO.lt(x), L::ONE / x, L::ZERO)
+}
+
+/// L and D⁻¹ of a block on the diagonal, of which the lower triangle counts.
+#[inline(always)]
+fn decompose<L: Lanes>(k: &Block<L>) -> Block<L> {
+    let d0 = inverse(k[0]);
+    let (l10, l20) = (k[3] * d0, k[6] * d0);
+    let d1 = inverse(k[4] - l10 * k[3]);
+    let t21 = k[7] - l20 * k[3];
+    let l21 = t21 * d1;
+    let d2 = inverse(k[8] - (l20 * k[6] + l21 * t21));
+    [d0, L::ZERO, L::ZERO, l10, d1, L::ZERO, l20, l21, d2]
+}
+
+/// x L⁻ᵀ D⁻¹ in place, and that times D.
+#[inline(always)]
+fn solve_right<L: Lanes>(x: &mut Block<L>, times_d: &mut Block<L>, l: &Block<L>) {
+    for i in 0..3 {
+        let a = x[3 * i];
+        let b = x[3 * i + 1] - a * l[3];
+        let c = x[3 * i + 2] - (a * l[6] + b * l[7]);
+        (times_d[3 * i], times_d[3 * i + 1], times_d[3 * i + 2]) = (a, b, c);
+        (x[3 * i], x[3 * i + 1], x[3 * i + 2]) = (a * l[0], b * l[4], c * l[8]);
+    }
+}
+
+/// t -= a bᵀ.
+#[inline(always)]
+fn subtract<L: Lanes>(t: &mut Block<L>, a: &Block<L>, b: &Block<L>) {
+    for i in 0..3 {
+        for j in 0..3 {
+            t[3 * i + j] -= a[3 * i] * b[3 * j] + a[3 * i + 1] * b[3 * j + 1] + a[3 * i + 2] * b[3 * j + 2];
+        }
+    }
+}
+
+/// The lower triangle of that.
+#[inline(always)]
+fn subtract_lower<L: Lanes>(t: &mut Block<L>, a: &Block<L>, b: &Block<L>) {
+    for i in 0..3 {
         for j in 0..=i {
-            let mut sum = h[i * n + j];
-            for k in 0..j {
-                sum -= h[i * n + k] * h[j * n + k];
-            }
-            if i == j {
-                inverse[i] = L::select(L::ZERO.lt(sum), L::ONE / sum.sqrt(), L::ZERO);
-            } else {
-                h[i * n + j] = sum * inverse[j];
-            }
+            t[3 * i + j] -= a[3 * i] * b[3 * j] + a[3 * i + 1] * b[3 * j + 1] + a[3 * i + 2] * b[3 * j + 2];
         }
     }
 }
 
-/// x = x L⁻ᵀ.
-#[inline(always)]
-fn solve_right<L: Lanes>(x: &mut [L], l: &[L], inverse: &[L], n: usize) {
-    let (l, inverse) = (&l[..n * n], &inverse[..n]);
-    for row in x.chunks_exact_mut(n.max(1)) {
-        for j in 0..n {
-            let mut sum = row[j];
-            for k in 0..j {
-                sum -= row[k] * l[j * n + k];
-            }
-            row[j] = sum * inverse[j];
-        }
-    }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arena::NIL;
+    use crate::solve::substep::articulation::shape::Shape;
+    use ferrode_math::simd::{Kernel, Level, dispatch_at};
 
-/// t -= a bᵀ; a and b have n columns.
-#[inline(always)]
-fn subtract<L: Lanes>(t: &mut [L], a: &[L], b: &[L], n: usize) {
-    if n == 0 {
-        return;
-    }
-    let columns = b.len() / n;
-    for (t, a) in t.chunks_exact_mut(columns.max(1)).zip(a.chunks_exact(n)) {
-        for (t, b) in t.iter_mut().zip(b.chunks_exact(n)) {
-            let mut sum = L::ZERO;
-            for (x, y) in a.iter().zip(b) {
-                sum += *x * *y;
-            }
-            *t -= sum;
-        }
-    }
-}
+    /// Solves with a matrix that has the plan's blocks, and gives the largest part of the right side that is left.
+    struct Solve<'a>(&'a Plan);
 
-/// The lower triangle of t -= a aᵀ.
-#[inline(always)]
-fn subtract_lower<L: Lanes>(t: &mut [L], a: &[L], rows: usize, n: usize) {
-    if n == 0 {
-        return;
-    }
-    for i in 0..rows {
-        for j in 0..=i {
-            let mut sum = L::ZERO;
-            for (x, y) in a[i * n..][..n].iter().zip(&a[j * n..][..n]) {
-                sum += *x * *y;
+    impl Kernel for Solve<'_> {
+        type Out = f32;
+
+        fn run<L: Lanes>(self) -> f32 {
+            let (plan, n) = (self.0, self.0.nodes());
+            let mut state = 1u32;
+            let mut number = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                L::splat((state >> 8) as f32 / 16_777_216.0 - 0.5)
+            };
+            let mut factor = Factor::default();
+            factor.begin(plan);
+            let mut dense = vec![vec![L::ZERO; 3 * n]; 3 * n];
+            let mut places: Vec<(usize, usize, usize)> = (0..n).map(|c| (c, c, c)).collect();
+            for c in 0..n {
+                for k in plan.start[c] as usize..plan.start[c + 1] as usize {
+                    places.push((n + k, plan.rows[k] as usize, c));
+                }
             }
-            t[i * rows + j] -= sum;
+            for (block, row, column) in places {
+                for i in 0..3 {
+                    for j in 0..3 {
+                        if row == column && j > i {
+                            continue;
+                        }
+                        // Diagonally dominant.
+                        let x = if row == column && i == j { number() + L::splat(40.0) } else { number() };
+                        factor.blocks[block][3 * i + j] = x;
+                        dense[3 * row + i][3 * column + j] = x;
+                        dense[3 * column + j][3 * row + i] = x;
+                    }
+                }
+            }
+            let wanted: Vec<[L; 3]> = (0..n).map(|_| [number(), number(), number()]).collect();
+            let mut x = wanted.clone();
+            factor.factorise(plan);
+            factor.solve(plan, &mut x);
+            let mut worst = 0.0f32;
+            for (i, row) in dense.iter().enumerate() {
+                let mut rest = wanted[i / 3][i % 3];
+                for (j, k) in row.iter().enumerate() {
+                    rest -= *k * x[j / 3][j % 3];
+                }
+                worst = rest.store().as_ref().iter().fold(worst, |worst, r| worst.max(r.abs()));
+            }
+            worst
         }
+    }
+
+    #[test]
+    fn what_is_left_of_the_right_side_is_rounding() {
+        // A tree with a loop, of joints with one to three nodes.
+        let mut joints = vec![[0, NIL]];
+        joints.extend((1..12).map(|i| [i, (i - 1) / 2]));
+        joints.push([11, 7]);
+        let shape = Shape::new(12, &joints, f64::INFINITY).unwrap();
+        let mut plan = Plan::default();
+        plan.prepare(&shape, true, (0..13).map(|i| 1 + i % 3));
+        assert!(!plan.fill.is_empty() && plan.nodes() == 25);
+        let left = dispatch_at(Level::Scalar, Solve(&plan));
+        assert!(left < 1e-6, "{left}");
     }
 }

@@ -7,8 +7,12 @@
 //! Articulations of one shape are solved in lanes, side by side.
 
 mod batch;
+mod carry;
 mod factor;
+mod plan;
+mod row;
 mod shape;
+mod triple;
 
 use super::bodies::SolverBodies;
 use super::joints::Joints;
@@ -16,6 +20,7 @@ use super::sleep::Sets;
 use crate::arena::NIL;
 use batch::Batch;
 pub(super) use batch::Mode;
+pub(super) use carry::{CarriedJoint, Rates};
 use core::any::Any;
 use core::cell::Cell;
 use core::ops::Range;
@@ -44,10 +49,15 @@ struct Batches<L: Lanes>(Vec<Batch<L>>);
 /// The articulations of a step.
 #[derive(Debug, Default)]
 pub(super) struct Articulations {
-    /// Shapes by topology, with whether any cost is accepted.
-    known: HashMap<(bool, Vec<JointEnds>), Known>,
+    /// Shapes by topology and kinds of joints, with whether any cost is accepted.
+    known: HashMap<(bool, Vec<(JointEnds, u8)>), Known>,
     shapes: Vec<Arc<Shape>>,
     step: u64,
+    /// The joints of the step before, by their bodies, with what was made of them: whether they are solved exactly, and carried along.
+    topology: Vec<[u32; 3]>,
+    compared: Vec<[u32; 3]>,
+    outcome: Vec<(bool, u8)>,
+    level: Option<Level>,
     sets: Sets,
     /// By body: its articulation, and its number therein.
     found: Vec<[u32; 2]>,
@@ -66,7 +76,7 @@ pub(super) struct Articulations {
 struct Member {
     joints: Vec<u32>,
     bodies: Vec<u32>,
-    ends: Vec<JointEnds>,
+    ends: Vec<(JointEnds, u8)>,
     /// Whether a joint is marked exact, so that cost does not matter.
     marked: bool,
 }
@@ -75,13 +85,12 @@ struct Member {
 pub(super) enum Task<'a> {
     /// Batches are made of them.
     Arrange,
-    /// They take over the rows that the joints have written, for a substep of so many seconds; none after the last substep, when
-    /// nothing acts any more.
-    Load(&'a Joints, Option<f32>),
+    /// They take over the joints at the start of a step, for substeps of so many seconds.
+    Begin(&'a Joints, f32),
+    /// Their rows follow the bodies, in another substep; or after the last one, when nothing acts any more.
+    Advance(&'a Joints, bool),
     /// They are solved.
     Solve(Mode),
-    /// Before bodies move by so many seconds, with the rotation that they have: see [`Batch::bend`].
-    Bend(f32),
     /// The joints get their impulses.
     Store(&'a mut Joints),
 }
@@ -89,24 +98,53 @@ pub(super) enum Task<'a> {
 impl Articulations {
     /// Finds the articulations among the joints, and takes those joints out of the sweeps from joint to joint.
     pub fn find(&mut self, level: Level, joints: &mut Joints, bodies: &mut SolverBodies) {
+        if self.are_as_before(level, joints, bodies) {
+            for (c, outcome) in joints.constraints.iter_mut().zip(&self.outcome) {
+                (c.exact, c.carried) = *outcome;
+            }
+            return;
+        }
         self.shapes.clear();
         self.order.clear();
         self.groups.clear();
         self.step += 1;
-        if !joints.constraints.iter().any(|c| c.exact) {
-            return;
+        if joints.constraints.iter().any(|c| c.exact) {
+            self.arrange(level, joints, bodies);
         }
+        self.outcome.clear();
+        self.outcome.extend(joints.constraints.iter().map(|c| (c.exact, c.carried)));
+    }
+
+    /// Whether the joints are of the same kinds and between the same bodies as in the step before.
+    fn are_as_before(&mut self, level: Level, joints: &Joints, bodies: &SolverBodies) -> bool {
+        let mut found = core::mem::take(&mut self.compared);
+        found.clear();
+        found.extend(joints.constraints.iter().map(|c| {
+            let movable = c.bodies.map(|body| bodies.is_movable(body));
+            let flags = [c.exact, c.marked, movable[0], movable[1]].into_iter();
+            let flags = flags.fold(u32::from(c.carried), |sum, flag| 2 * sum + u32::from(flag));
+            [c.bodies[0], c.bodies[1], flags]
+        }));
+        let same = self.level == Some(level) && found == self.topology;
+        self.compared = core::mem::replace(&mut self.topology, found);
+        self.level = Some(level);
+        same
+    }
+
+    fn arrange(&mut self, level: Level, joints: &mut Joints, bodies: &mut SolverBodies) {
         self.find_sets(joints, bodies);
         for (number, member) in self.members.iter_mut().enumerate() {
             let key = (member.marked, core::mem::take(&mut member.ends));
             let known = self.known.entry(key).or_insert_with_key(|(marked, ends)| {
                 let most = if *marked { f64::INFINITY } else { MOST_PRODUCTS };
-                Known { shape: Shape::new(member.bodies.len(), ends, most).map(Arc::new), used: 0 }
+                let ends: Vec<JointEnds> = ends.iter().map(|(ends, _)| *ends).collect();
+                Known { shape: Shape::new(member.bodies.len(), &ends, most).map(Arc::new), used: 0 }
             });
             known.used = self.step;
             let Some(shape) = &known.shape else {
                 for joint in &member.joints {
-                    joints.constraints[*joint as usize].exact = false;
+                    let constraint = &mut joints.constraints[*joint as usize];
+                    (constraint.exact, constraint.carried) = (false, 0);
                 }
                 continue;
             };
@@ -139,7 +177,7 @@ impl Articulations {
         for c in joints.constraints.iter_mut().filter(|c| c.exact) {
             match c.bodies.map(|body| bodies.is_movable(body)) {
                 [true, true] => sets.unite(c.bodies[0], c.bodies[1]),
-                [false, false] => c.exact = false,
+                [false, false] => (c.exact, c.carried) = (false, 0),
                 _ => {}
             }
         }
@@ -157,7 +195,7 @@ impl Articulations {
             let member = &mut members[found[root][0] as usize];
             member.joints.push(joint as u32);
             member.marked |= c.marked;
-            member.ends.push(movable.map(|body| {
+            let ends = movable.map(|body| {
                 let Some(body) = body else { return NIL };
                 let number = &mut found[body as usize][1];
                 if *number == NIL {
@@ -165,7 +203,8 @@ impl Articulations {
                     member.bodies.push(body);
                 }
                 *number
-            }));
+            });
+            member.ends.push((ends, c.carried));
         }
     }
 
@@ -241,10 +280,10 @@ impl Kernel for Run<'_, '_> {
             let shape = &shapes[batch.shape as usize];
             match self.task {
                 Task::Arrange => {}
-                Task::Load(joints, h) => batch.load(shape, joints, *h, scales, velocities),
-                Task::Solve(mode) => batch.sweep(shape, *mode, velocities, deltas),
-                Task::Bend(h) => batch.bend(*h, velocities, deltas),
-                Task::Store(joints) => batch.store(&joints.constraints, &mut joints.rows),
+                Task::Begin(joints, h) => batch.begin(shape, joints, *h, scales, velocities),
+                Task::Advance(joints, act) => batch.advance(shape, joints, *act, velocities, deltas),
+                Task::Solve(mode) => batch.sweep(*mode, velocities, deltas),
+                Task::Store(joints) => batch.store(&joints.constraints, &mut joints.rows, &mut joints.kept),
             }
         }
     }

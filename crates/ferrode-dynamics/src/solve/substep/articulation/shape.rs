@@ -21,29 +21,15 @@ pub(super) struct Shape {
     pub ends: Vec<JointEnds>,
     /// Where the blocks below the diagonal of each column begin in `rows`.
     pub start: Vec<u32>,
-    /// Rows of these blocks, ascending within a column. Block k of this list is block `ends.len() + k` of the matrix; the blocks on
-    /// the diagonal come first.
+    /// Rows of these blocks, ascending within a column.
     pub rows: Vec<u32>,
-    /// What each column takes from the blocks of later ones, column after column.
-    pub updates: Vec<Update>,
-    /// Where each column's updates begin.
-    pub update_start: Vec<u32>,
     /// Blocks off the diagonal that the matrix itself has.
     pub products: Vec<Product>,
 }
 
-/// `target -= a bᵀ`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Update {
-    pub target: u32,
-    pub a: u32,
-    pub b: u32,
-}
-
-/// `target += J_a J_bᵀ`, with the Jacobians of two joints for the body that they share.
+/// Two joints that share a body, the one of the later row first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Product {
-    pub target: u32,
     /// Joint in the order of elimination, and which of its ends.
     pub a: (u32, u8),
     pub b: (u32, u8),
@@ -98,8 +84,6 @@ impl Shape {
             order,
             start: vec![0],
             rows: Vec::new(),
-            updates: Vec::new(),
-            update_start: vec![0],
             products: Vec::new(),
         };
         for column in below {
@@ -108,37 +92,15 @@ impl Shape {
             shape.rows[first..].sort_unstable();
             shape.start.push(shape.rows.len() as u32);
         }
-        let n = shape.order.len() as u32;
-        for column in 0..n as usize {
-            let range = shape.start[column]..shape.start[column + 1];
-            for b in range.clone() {
-                for a in b..range.end {
-                    let target = shape.block(shape.rows[a as usize], shape.rows[b as usize]);
-                    shape.updates.push(Update { target, a: n + a, b: n + b });
-                }
-            }
-            shape.update_start.push(shape.updates.len() as u32);
-        }
         for (a, b) in at.iter().flat_map(pairs) {
             let placed = |x: (u32, u8)| (place[x.0 as usize], x.1);
             let (a, b) = (placed(a), placed(b));
             let (low, high) = if a.0 <= b.0 { (a, b) } else { (b, a) };
             if low.0 != high.0 {
-                let target = shape.block(high.0, low.0);
-                shape.products.push(Product { target, a: high, b: low });
+                shape.products.push(Product { a: high, b: low });
             }
         }
         Some(shape)
-    }
-
-    /// The number of a block of the lower triangle that is there.
-    fn block(&self, row: u32, column: u32) -> u32 {
-        if row == column {
-            return row;
-        }
-        let range = self.start[column as usize] as usize..self.start[column as usize + 1] as usize;
-        let at = self.rows[range.clone()].partition_point(|r| *r < row);
-        (self.order.len() + range.start + at) as u32
     }
 }
 
