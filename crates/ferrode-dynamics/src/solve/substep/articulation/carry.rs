@@ -235,12 +235,11 @@ impl<L: Lanes> Start<L> {
         let second = add(&self.axis, &self.slip);
         let slip = add(&self.slip, &sub(&apply(&two.turn, &second), &apply(&one.turn, &self.axis)));
         let error = cross(&axis, &slip);
-        for k in 0..2 {
-            let across = add(&self.across[k], &apply(&one.turn, &self.across[k]));
-            turning[k].angular = about(scales, &across);
-            let error = dot(&error, &across);
-            turning[k].error = error;
-            turning[k].wanted[0] = (correct * error).max(-most).min(most);
+        for (row, across) in turning.iter_mut().zip(&self.across) {
+            let across = add(across, &apply(&one.turn, across));
+            row.angular = about(scales, &across);
+            row.error = dot(&error, &across);
+            row.wanted[0] = (correct * row.error).max(-most).min(most);
         }
         let drive = &mut turning[2];
         drive.angular = about(scales, &axis);

@@ -189,10 +189,9 @@ impl<L: Lanes> Written<L> {
     pub fn row(&self) -> (LaneRow<L>, [[L; 3]; 2], [L; 2]) {
         let mut row = LaneRow::new(self.role);
         let mut linear = [[L::ZERO; 3]; 2];
-        for side in 0..2 {
-            for k in 0..3 {
-                linear[side][k] = L::load(&self.jacobian[side][k]);
-                row.angular[side][k] = L::load(&self.jacobian[side][k + 3]);
+        for ((linear, angular), jacobian) in linear.iter_mut().zip(&mut row.angular).zip(&self.jacobian) {
+            for (to, from) in linear.iter_mut().chain(angular).zip(jacobian) {
+                *to = L::load(from);
             }
         }
         for (wanted, bias) in row.wanted.iter_mut().zip(&self.bias) {
