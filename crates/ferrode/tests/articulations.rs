@@ -332,6 +332,44 @@ fn joints_can_be_left_to_the_sweeps() {
     assert_eq!(run_with(Some(false), true), loose);
 }
 
+#[test]
+fn rows_that_are_carried_along_do_as_written_ones() {
+    // An arm of hinges and balls in turn falls, where joints whose forces are recorded write their rows.
+    let fall = |written: fn(usize) -> bool, base: Vec3| {
+        let mut world = world(Stepper::Substep);
+        change(&mut world, |settings| settings.sleep_speed = 0.0);
+        let mut last = None;
+        for i in 0..8 {
+            let at = base + Vec3::X * (i as f64 * 0.3);
+            let sides = Vec3::new(0.26, 0.06, 0.04);
+            let body = link(&mut world, at + Vec3::X * 0.15, sides, 0.5 + 0.1 * i as f64);
+            let joint = if i % 2 == 0 {
+                let axis = if i % 4 == 0 { Vec3::Y } else { Vec3::new(0.0, 0.6, 0.8) };
+                let hinge = world.add_hinge(Some(body), last, at, axis).unwrap();
+                if i == 4 {
+                    world.joint_mut::<Hinge>(hinge).unwrap().set_motor(2.0, 0.5).unwrap();
+                }
+                hinge
+            } else {
+                world.add_ball(Some(body), last, at).unwrap()
+            };
+            world.set_joint_feedback(joint, written(i)).unwrap();
+            last = Some(body);
+        }
+        let (position, angle) = run(&mut world, H, 30);
+        assert!(position < 1e-6 && angle < 1e-5, "{position} {angle}");
+        world.bodies().map(|(_, body)| body.position() - base).collect::<Vec<_>>()
+    };
+    let expected = fall(|_| true, Vec3::ZERO);
+    assert!(expected.iter().any(|p| p.z < -0.5), "{expected:?}");
+    let far = Vec3::new(1e7, -1e7, 1e7);
+    for found in [fall(|_| false, Vec3::ZERO), fall(|i| i % 3 == 1, Vec3::ZERO), fall(|_| false, far)] {
+        for (a, b) in expected.iter().zip(&found) {
+            assert!((*a - *b).length() < 1e-4, "{a:?} {b:?}");
+        }
+    }
+}
+
 fn hash(world: &World) -> u64 {
     world.bodies().fold(0, |hash: u64, (_, body)| {
         let (p, q, v) = (body.position(), body.quaternion(), body.angular_velocity());
@@ -357,6 +395,8 @@ fn lanes_of_every_width_give_the_same_bits() {
                     let hinge =
                         start.add_hinge(Some(body), Some(last), at - Vec3::Y * 0.15, Vec3::X).unwrap();
                     start.joint_mut::<Hinge>(hinge).unwrap().set_limits(-0.1 * i as f64, 0.3).unwrap();
+                    // It writes its rows, the others carry theirs along.
+                    start.set_joint_feedback(hinge, k == 2).unwrap();
                 }
                 last = Some(body);
             }

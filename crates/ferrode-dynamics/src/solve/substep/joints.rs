@@ -1,4 +1,5 @@
-//! Joints: their rows, written anew in each substep from where the bodies are, and solved joint by joint.
+//! Joints: their rows, written anew in each substep from where the bodies are unless an articulation carries them along, and solved joint by
+//! joint.
 //!
 //! The rows of a joint without bounds are solved as one block, exactly; limits and motors follow one after the other. A
 //! row with a CFM of its own is a spring, converted as `soft` says; others spring back as the settings say. When rows change

@@ -3,7 +3,7 @@
 //! ```text
 //! wake → gather → colour → prepare rows of contacts
 //! n times:   forces and impulses of the substep before → (first: contacts' impulses of the step before)
-//!            → joints write rows → one sweep with bias → positions → one sweep without
+//!            → rows of joints → one sweep with bias → positions → one sweep without
 //! restitution → impulses back into the manifolds → velocities and poses → islands to sleep
 //! ```
 //!
@@ -11,7 +11,7 @@
 //! in Physics Simulation", SCA 2019), constraints that push back like springs (`soft`), and after each move of the bodies
 //! a sweep without that push, which takes out the velocity that it put in.
 //!
-//! Contacts are linearised once per step, joints write their rows anew in each substep. See docs/substep.md.
+//! Contacts are linearised once per step, rows of joints follow the bodies in each substep. See docs/substep.md.
 
 mod articulation;
 mod bodies;

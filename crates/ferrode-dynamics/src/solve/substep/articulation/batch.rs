@@ -15,11 +15,11 @@
 //! factor is made again.
 
 use super::carry::{self, Motion, Rates, Start};
-use super::factor::{Block, Factor};
+use super::factor::{self, Block, Factor};
 use super::plan::{NODE, Plan};
 use super::row::{Bound, LaneRow, Role, SOFTNESS, Written, angular, linear};
 use super::shape::{JointEnds, Shape};
-use super::triple::{add, cross, dot, over, scaled, unscaled};
+use super::triple::{add, cross, dot, over, scaled, unscaled, without_trifles};
 use crate::arena::NIL;
 use crate::solve::substep::joints::{JointConstraint, JointRow, Joints};
 use core::cell::Cell;
@@ -29,6 +29,9 @@ use ferrode_math::simd::{Lanes, Mask, NO_RECORD, Record};
 const FREEING: usize = 6;
 /// Most trials.
 const TRIALS: usize = 16;
+
+/// Of scaled velocities: parts of 10⁻⁷ of it are rounded away.
+const VELOCITY_TRIFLE: f32 = 1e-10;
 
 /// What a sweep does.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -511,9 +514,12 @@ impl<L: Lanes> Batch<L> {
     #[inline(always)]
     fn gather(&mut self, velocities: &[Cell<Record>]) {
         self.velocities.clear();
+        let unit = L::splat(VELOCITY_TRIFLE);
         for (index, [_, inverse]) in self.bodies.iter().zip(&self.yields) {
             let [a, b, c, d, e, f, ..] = L::gather(velocities, index);
-            self.velocities.push([a, b, c, d * *inverse, e * *inverse, f * *inverse]);
+            let [a, b, c] = without_trifles(&[a, b, c], unit);
+            let [d, e, f] = without_trifles(&[d * *inverse, e * *inverse, f * *inverse], unit);
+            self.velocities.push([a, b, c, d, e, f]);
         }
         self.velocities.push([L::ZERO; 6]);
     }
@@ -709,6 +715,7 @@ impl<L: Lanes> Batch<L> {
                 for k in 0..NODE {
                     x[k] = -own[k].residual(mode, v[k], own[k].impulse) * own[k].free;
                 }
+                *x = without_trifles(x, L::splat(factor::TRIFLE));
             }
         }
         factor.solve(plan, changes);
@@ -862,8 +869,10 @@ fn mask<L: Lanes>(block: &mut Block<L>, a: &[LaneRow<L>], b: &[LaneRow<L>]) {
 #[inline(always)]
 fn curve<L: Lanes>(delta: &[L; 8], inverse: L, step: &[L; 3], s: &[L; 8], over: &[L; 3]) -> [L; 3] {
     let theta = unscaled(s, &[delta[3] * inverse, delta[4] * inverse, delta[5] * inverse]);
-    let small = unscaled(s, step);
-    let (one, two) = (cross(&small, &theta), cross(&theta, &cross(&theta, &small)));
+    let unit = L::splat(carry::TRIFLE);
+    let (theta, small) = (without_trifles(&theta, unit), without_trifles(&unscaled(s, step), unit));
+    let inner = without_trifles(&cross(&theta, &small), unit);
+    let (one, two) = (cross(&small, &theta), cross(&theta, &inner));
     let (half, twelfth) = (L::splat(0.5), L::splat(1.0 / 12.0));
     let d = add(
         &[one[0] * half, one[1] * half, one[2] * half],

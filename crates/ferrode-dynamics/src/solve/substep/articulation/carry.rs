@@ -5,11 +5,13 @@
 //! 10⁻⁷ of the motion, wherever the bodies are; the next step begins with errors measured in `f64`.
 
 use super::row::LaneRow;
-use super::triple::{add, apply, cross, dot, scaled, sub, unscaled};
+use super::triple::{add, apply, cross, dot, scaled, sub, unscaled, without_trifles};
 use crate::carried::{Carried, Drive};
 use crate::solve::substep::manifold::to_f32;
 use ferrode_math::simd::{Lanes, Mask};
 
+/// Of lengths and angles, in m and rad: parts of 10⁻⁷ of it are rounded away.
+pub(super) const TRIFLE: f32 = 1e-8;
 /// Numbers of a carried joint in one lane.
 const NUMBERS: usize = 9 + 12 + 2 + 3 + 8;
 
@@ -39,7 +41,11 @@ impl CarriedJoint {
     /// `give`: γ as a multiple of a CFM; `h`: the length of a substep.
     pub fn new(carried: &Carried, give: f64, h: f64, impulses: &[f32; 6]) -> Self {
         let mut numbers = [0.0; NUMBERS];
-        let mut put = |at: usize, v| numbers[at..at + 3].copy_from_slice(&to_f32(v));
+        let trifle = f64::from(TRIFLE) * 1e-7;
+        let mut put = |at: usize, v| {
+            numbers[at..at + 3]
+                .copy_from_slice(&to_f32(v).map(|x| if f64::from(x).abs() < trifle { 0.0 } else { x }));
+        };
         put(0, carried.arms[0]);
         put(3, carried.arms[1]);
         put(6, carried.gap);
@@ -104,8 +110,10 @@ impl<L: Lanes> Motion<L> {
     #[inline(always)]
     pub fn new(delta: &[L; 6], scales: &[L; 8]) -> Self {
         let s = scales[0];
-        let rotation = unscaled(scales, &[delta[3], delta[4], delta[5]]);
-        Self { displacement: [delta[0] * s, delta[1] * s, delta[2] * s], rotation, turn: turn(&rotation) }
+        let unit = L::splat(TRIFLE);
+        let rotation = without_trifles(&unscaled(scales, &[delta[3], delta[4], delta[5]]), unit);
+        let displacement = without_trifles(&[delta[0] * s, delta[1] * s, delta[2] * s], unit);
+        Self { displacement, rotation, turn: turn(&rotation) }
     }
 }
 
@@ -213,9 +221,13 @@ impl<L: Lanes> Start<L> {
         let [one, two] = motions;
         let (correct, most) = (L::splat(rates.correct), L::splat(rates.most));
         let moved = [apply(&one.turn, &self.arms[0]), apply(&two.turn, &self.arms[1])];
-        let arms = [add(&self.arms[0], &moved[0]), add(&self.arms[1], &moved[1])];
+        let unit = L::splat(TRIFLE);
+        let arms = [
+            without_trifles(&add(&self.arms[0], &moved[0]), unit),
+            without_trifles(&add(&self.arms[1], &moved[1]), unit),
+        ];
         let apart = sub(&add(&two.displacement, &moved[1]), &add(&one.displacement, &moved[0]));
-        let error = add(&self.gap, &apart);
+        let error = without_trifles(&add(&self.gap, &apart), unit);
         let Some((points, rest)) = rows.split_first_chunk_mut::<3>() else { return };
         let [a, b, c] = arms[0];
         points[0].angular[0] = scaled(scales[0], &[L::ZERO, c, -b]);
@@ -230,13 +242,13 @@ impl<L: Lanes> Start<L> {
             points[k].wanted[0] = (correct * error[k]).max(-most).min(most);
         }
         let Some(turning) = rest.first_chunk_mut::<3>() else { return };
-        let axis = add(&self.axis, &apply(&one.turn, &self.axis));
+        let axis = without_trifles(&add(&self.axis, &apply(&one.turn, &self.axis)), unit);
         // (a + Δ) turned with the second body, less a turned with the first.
         let second = add(&self.axis, &self.slip);
         let slip = add(&self.slip, &sub(&apply(&two.turn, &second), &apply(&one.turn, &self.axis)));
-        let error = cross(&axis, &slip);
+        let error = without_trifles(&cross(&axis, &slip), unit);
         for (row, across) in turning.iter_mut().zip(&self.across) {
-            let across = add(across, &apply(&one.turn, across));
+            let across = without_trifles(&add(across, &apply(&one.turn, across)), unit);
             row.angular = about(scales, &across);
             row.error = dot(&error, &across);
             row.wanted[0] = (correct * row.error).max(-most).min(most);

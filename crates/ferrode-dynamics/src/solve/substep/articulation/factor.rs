@@ -1,10 +1,14 @@
 //! The factor of an articulation's matrix: K = L D Lᵀ in blocks of three by three, for articulations of one shape side by side.
 
 use super::plan::Plan;
+use super::triple::without_trifles;
 use ferrode_math::simd::Lanes;
 
 /// Three by three, by rows.
 pub(super) type Block<L> = [L; 9];
+
+/// Of right sides and impulses, in m/s and N s: parts of 10⁻⁷ of it are rounded away.
+pub(super) const TRIFLE: f32 = 1e-13;
 
 /// K, and then its factor. Of a block on the diagonal that holds the inverses of D on its diagonal, and L below.
 #[derive(Clone, Debug)]
@@ -36,7 +40,9 @@ impl<L: Lanes> Factor<L> {
         let n = plan.nodes();
         let Self { blocks, column } = self;
         for c in 0..n {
-            let pivot = decompose(&blocks[c]);
+            let k = blocks[c];
+            let unit = (k[0] + k[4] + k[8]) * L::splat(1e-8);
+            let pivot = decompose(&k, unit);
             blocks[c] = pivot;
             let (start, end) = (plan.start[c] as usize, plan.start[c + 1] as usize);
             // A column changes blocks on the diagonal, and those of later columns, which lie behind its own.
@@ -45,7 +51,7 @@ impl<L: Lanes> Factor<L> {
             let below = &mut below[start..];
             column.resize(below.len().max(column.len()), [L::ZERO; 9]);
             for (block, times_d) in below.iter_mut().zip(column.iter_mut()) {
-                solve_right(block, times_d, &pivot);
+                solve_right(block, times_d, &pivot, unit);
             }
             for update in &plan.updates[plan.update_start[c] as usize..plan.update_start[c + 1] as usize] {
                 let (a, b) = (&column[update.a as usize], &below[update.b as usize]);
@@ -62,12 +68,12 @@ impl<L: Lanes> Factor<L> {
     /// x = K⁻¹ x.
     #[inline(always)]
     pub fn solve(&self, plan: &Plan, x: &mut [[L; 3]]) {
-        let n = plan.nodes();
+        let (n, unit) = (plan.nodes(), L::splat(TRIFLE));
         for c in 0..n {
             let l = &self.blocks[c];
             let [a, b, d] = x[c];
             let b = b - l[3] * a;
-            let y = without_trifles([a, b, d - (l[6] * a + l[7] * b)]);
+            let y = without_trifles(&[a, b, d - (l[6] * a + l[7] * b)], unit);
             x[c] = y;
             let range = plan.start[c] as usize..plan.start[c + 1] as usize;
             for (m, row) in self.blocks[n + range.start..n + range.end].iter().zip(&plan.rows[range]) {
@@ -88,19 +94,11 @@ impl<L: Lanes> Factor<L> {
                     y[i] -= m[i] * t[0] + m[3 + i] * t[1] + m[6 + i] * t[2];
                 }
             }
-            let [a, b, d] = without_trifles(y);
+            let [a, b, d] = without_trifles(&y, unit);
             let b = b - l[7] * d;
             x[c] = [a - (l[3] * b + l[6] * d), b, d];
         }
     }
-}
-
-/// Rounds numbers below 1e-33 to zero. Down a long chain, impulses fade to numbers that processors take a hundred times as long to
-/// compute with.
-#[inline(always)]
-fn without_trifles<L: Lanes>(x: [L; 3]) -> [L; 3] {
-    let k = L::splat(1e-26);
-    [x[0] + k - k, x[1] + k - k, x[2] + k - k]
 }
 
 #[inline(always)]
@@ -110,23 +108,24 @@ fn inverse<L: Lanes>(x: L) -> L {
 
 /// L and D⁻¹ of a block on the diagonal, of which the lower triangle counts.
 #[inline(always)]
-fn decompose<L: Lanes>(k: &Block<L>) -> Block<L> {
+fn decompose<L: Lanes>(k: &Block<L>, unit: L) -> Block<L> {
+    let [k3, k6, k7] = without_trifles(&[k[3], k[6], k[7]], unit);
     let d0 = inverse(k[0]);
-    let (l10, l20) = (k[3] * d0, k[6] * d0);
-    let d1 = inverse(k[4] - l10 * k[3]);
-    let t21 = k[7] - l20 * k[3];
+    let (l10, l20) = (k3 * d0, k6 * d0);
+    let d1 = inverse(k[4] - l10 * k3);
+    let t21 = k7 - l20 * k3;
     let l21 = t21 * d1;
-    let d2 = inverse(k[8] - (l20 * k[6] + l21 * t21));
+    let d2 = inverse(k[8] - (l20 * k6 + l21 * t21));
     [d0, L::ZERO, L::ZERO, l10, d1, L::ZERO, l20, l21, d2]
 }
 
 /// x L⁻ᵀ D⁻¹ in place, and that times D.
 #[inline(always)]
-fn solve_right<L: Lanes>(x: &mut Block<L>, times_d: &mut Block<L>, l: &Block<L>) {
+fn solve_right<L: Lanes>(x: &mut Block<L>, times_d: &mut Block<L>, l: &Block<L>, unit: L) {
     for i in 0..3 {
-        let a = x[3 * i];
-        let b = x[3 * i + 1] - a * l[3];
-        let c = x[3 * i + 2] - (a * l[6] + b * l[7]);
+        let [a, b, c] = without_trifles(&[x[3 * i], x[3 * i + 1], x[3 * i + 2]], unit);
+        let b = b - a * l[3];
+        let c = c - (a * l[6] + b * l[7]);
         (times_d[3 * i], times_d[3 * i + 1], times_d[3 * i + 2]) = (a, b, c);
         (x[3 * i], x[3 * i + 1], x[3 * i + 2]) = (a * l[0], b * l[4], c * l[8]);
     }

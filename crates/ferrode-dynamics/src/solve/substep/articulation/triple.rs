@@ -2,6 +2,15 @@
 
 use ferrode_math::simd::Lanes;
 
+/// Rounds numbers to multiples of about 10⁻⁷ of `unit`; larger ones by a unit in the last place at most.
+///
+/// In motion that is nearly plane, and down a long chain, numbers fade until products of them are denormal, with which processors compute a hundred times as
+/// slowly. What is as small as that is noise.
+#[inline(always)]
+pub(super) fn without_trifles<L: Lanes>(x: &[L; 3], unit: L) -> [L; 3] {
+    [x[0] + unit - unit, x[1] + unit - unit, x[2] + unit - unit]
+}
+
 #[inline(always)]
 pub(super) fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
