@@ -13,6 +13,9 @@ const LEAF: usize = 4;
 /// Planes that are tried as a split.
 const BINS: usize = 16;
 
+/// Fewer items fit the processor's first cache as they are, and a small mesh shall not take twice the memory.
+const PACKED: usize = 64;
+
 /// A tree over bounded boxes, numbered as they were given; built once, by the surface area heuristic (Wald, *On fast
 /// construction of SAH-based bounding volume hierarchies*, 2007), four boxes to a node, and for rays seven. Boxes are rounded outwards to
 /// single precision, or to bytes; with its list of items the tree takes 30 to 50 bytes a box.
@@ -20,7 +23,7 @@ const BINS: usize = 16;
 pub struct AabbTree {
     /// Leaves are parts of the list of items: the first, and how many.
     nodes: WideTree,
-    /// The same leaves, for rays and what moves.
+    /// The same leaves, for rays and what moves; of small trees empty.
     packed: PackedTree,
     items: Vec<u32>,
 }
@@ -64,7 +67,9 @@ impl AabbTree {
         };
         let open = |k: usize| [0, 1].map(|h| part(list[k].halves + h));
         tree.nodes.build(part(0), open);
-        tree.packed = PackedTree::build(part(0), open);
+        if items.len() >= PACKED {
+            tree.packed = PackedTree::build(part(0), open);
+        }
         // Not in the memory of the larger ones, where it would be collected.
         tree.items = items.iter().map(|i| i.0).collect();
         tree.nodes.shrink_to_fit();
@@ -95,7 +100,8 @@ impl AabbTree {
         let mut found = |first, count, limit: &mut f64| {
             self.items(first, count).iter().for_each(|&item| found(item, limit));
         };
-        match probe.bundle(self.packed.bounds()).filter(|_| self.items.len() < PackedTree::MOST) {
+        let packed = (PACKED..PackedTree::MOST).contains(&self.items.len());
+        match probe.bundle(self.packed.bounds()).filter(|_| packed) {
             Some(bundle) => self.packed.seek(&bundle, limit, found),
             None => self.nodes.seek(probe, limit, &mut found),
         }
