@@ -71,22 +71,35 @@ pub(crate) struct Island {
 /// steps to the same bits.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
-    islands: Islands,
-    island: Island,
-    pub direct: direct::Workspace,
-    pub quick: quick::Workspace,
+    /// Large: a step takes it and gives it back without copying it.
+    stepping: Option<Box<Stepping>>,
     /// Memory of destroyed contacts, for the next step's.
     #[allow(clippy::vec_box)]
     pub spare_contacts: Vec<Box<crate::joint::Contact>>,
+    pub substep: substep::Workspace,
+}
+
+/// What `Direct` and `Quick` work in.
+#[derive(Debug, Default)]
+struct Stepping {
+    islands: Islands,
+    island: Island,
+    direct: direct::Workspace,
+    quick: quick::Workspace,
     fast: fast::Workspace,
     /// The island once more, with the bodies where the step has brought them.
     moved_island: Island,
-    pub substep: substep::Workspace,
 }
 
 impl Clone for Scratch {
     fn clone(&self) -> Self {
-        Self { direct: self.direct.clone(), substep: self.substep.clone(), ..Self::default() }
+        Self { stepping: self.stepping.clone(), substep: self.substep.clone(), ..Self::default() }
+    }
+}
+
+impl Clone for Stepping {
+    fn clone(&self) -> Self {
+        Self { direct: self.direct.clone(), ..Self::default() }
     }
 }
 
@@ -153,8 +166,8 @@ impl World {
         debug_assert_eq!(self.check(), Ok(()));
         report.clear();
         self.timing.begin();
-        let mut scratch = core::mem::take(&mut self.scratch);
-        let Scratch { islands, island, moved_island, direct, quick, .. } = &mut scratch;
+        let mut stepping = self.scratch.stepping.take().unwrap_or_default();
+        let Stepping { islands, island, moved_island, direct, quick, .. } = &mut *stepping;
 
         self.quarantine_unusable_bodies(report);
         self.auto_disable_bodies(h);
@@ -212,7 +225,7 @@ impl World {
             self.timing.spent_on(Phase::Integrate);
         }
         direct::end_step(direct);
-        self.scratch = scratch;
+        self.scratch.stepping = Some(stepping);
         Ok(())
     }
 
@@ -438,6 +451,7 @@ fn ends_of<'a>(joint: &Joint, span: &JointSpan, bodies: &'a [SolverBody]) -> End
 }
 
 impl SolverBody {
+    #[inline(always)]
     fn new(body: &Body) -> Self {
         let r = body.frame.rotation;
         let immovable = body.quarantined || body.is_kinematic();

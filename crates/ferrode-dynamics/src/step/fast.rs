@@ -4,7 +4,7 @@
 //! own few rows exactly, given the forces found so far; then all bodies move by k. Kept for programs of old manuals: `Quick`
 //! is better at most things.
 
-use super::{Island, SolverBody, ends_of};
+use super::{Island, SolverBody, Stepping, ends_of};
 use crate::arena::NIL;
 use crate::ends::StepContext;
 use crate::foreign::MovedObserver;
@@ -57,8 +57,8 @@ impl World {
     ) -> Result<StepReport, Error> {
         crate::softness::step_size(h)?;
         let mut report = StepReport::default();
-        let mut scratch = core::mem::take(&mut self.scratch);
-        let (island, work) = (&mut scratch.island, &mut scratch.fast);
+        let mut stepping = self.scratch.stepping.take().unwrap_or_default();
+        let Stepping { island, fast: work, .. } = &mut *stepping;
         self.quarantine_unusable_bodies(&mut report);
         self.auto_disable_bodies(h);
         work.body_seen.clear();
@@ -97,7 +97,7 @@ impl World {
             report.islands += 1;
         }
         work.awake = awake;
-        self.scratch = scratch;
+        self.scratch.stepping = Some(stepping);
         Ok(report)
     }
 
