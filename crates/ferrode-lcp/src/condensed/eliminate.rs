@@ -1,7 +1,7 @@
 //! Elimination of the rows without bounds, four at a time.
 //!
 //! Each joint of a figure shares bodies with few others, so most of a row are zeros. They are left out by blocks of four numbers: each row has
-//! a set of the blocks that hold something. Of four rows that are eliminated only the blocks are looked at that any of them holds, and only the
+//! a set of the blocks that may hold something. Of four rows that are eliminated only the blocks are looked at that any of them holds, and only the
 //! rows that stand in these blocks change.
 
 use super::{MOST_BLOCKS, SINGULAR};
@@ -78,8 +78,15 @@ pub(super) fn eliminate<Q: Quad>(
         }
     }
     // The four rows' blocks side by side, and those over the pivots, with the other sign.
-    scratch.clear();
-    scratch.resize(list.len(), [[0.0; 4]; 8]);
+    if scratch.len() < list.len() {
+        scratch.resize(MOST_BLOCKS, [[0.0; 4]; 8]);
+    }
+    let scratch = &mut scratch[..list.len()];
+    for k in end - start..4 {
+        for packed in &mut *scratch {
+            (packed[k], packed[4 + k]) = ([0.0; 4], [0.0; 4]);
+        }
+    }
     for (k, row) in above.chunks_exact(width).enumerate() {
         let inverse = Q::splat(-inverses[k]);
         for (packed, b) in scratch.iter_mut().zip(list) {

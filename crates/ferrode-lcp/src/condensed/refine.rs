@@ -36,7 +36,9 @@ impl CondensedWorkspace {
         }
         // L D L^T with unit diagonal, row by row; `pivots` the reciprocals of D.
         let f = free.len();
-        refill(triangle, f * f, 0.0);
+        if triangle.len() < f * f {
+            triangle.resize(f * f, 0.0);
+        }
         pivots.clear();
         for (i, at) in free.iter().enumerate() {
             let at = *at as usize;

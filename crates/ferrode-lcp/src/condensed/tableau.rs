@@ -94,6 +94,28 @@ pub(super) struct Tableau {
     scaled: Vec<[f64; 4]>,
 }
 
+/// How many blocks a row has: a number that the compiler knows for the small tableaus that most are, whose loops then have no end to foretell.
+trait Width: Copy {
+    fn blocks(self) -> usize;
+}
+
+#[derive(Clone, Copy)]
+struct Fixed<const W: usize>;
+
+impl<const W: usize> Width for Fixed<W> {
+    #[inline(always)]
+    fn blocks(self) -> usize {
+        W
+    }
+}
+
+impl Width for usize {
+    #[inline(always)]
+    fn blocks(self) -> usize {
+        self
+    }
+}
+
 /// What ends a drive's step.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Event {
@@ -129,6 +151,20 @@ impl Tableau {
                 *t = *s;
             }
         }
+        match width {
+            1 => self.drive_all::<Q>(k, Fixed::<1>),
+            2 => self.drive_all::<Q>(k, Fixed::<2>),
+            3 => self.drive_all::<Q>(k, Fixed::<3>),
+            4 => self.drive_all::<Q>(k, Fixed::<4>),
+            5 => self.drive_all::<Q>(k, Fixed::<5>),
+            6 => self.drive_all::<Q>(k, Fixed::<6>),
+            _ => self.drive_all::<Q>(k, width),
+        }
+    }
+
+    /// Takes the rows in, one after the other.
+    #[inline(always)]
+    fn drive_all<Q: Quad>(&mut self, k: usize, w: impl Width) -> Option<()> {
         let most = 50 + 20 * k as u32;
         let mut frozen = false;
         for at in 0..k {
@@ -140,16 +176,16 @@ impl Tableau {
             if lo == 0.0 && hi == 0.0 {
                 continue;
             }
-            let w = self.z.as_flattened()[at];
-            if lo == 0.0 && w >= 0.0 {
-                self.put(at, State::Lower, w);
-            } else if hi == 0.0 && w <= 0.0 {
-                self.put(at, State::Upper, w);
-            } else if w == 0.0 {
-                self.pivot::<Q>(at)?;
+            let z = self.z.as_flattened()[at];
+            if lo == 0.0 && z >= 0.0 {
+                self.put(at, State::Lower, z);
+            } else if hi == 0.0 && z <= 0.0 {
+                self.put(at, State::Upper, z);
+            } else if z == 0.0 {
+                self.pivot::<Q>(at, w)?;
                 self.put(at, State::Free, 0.0);
             } else {
-                self.drive::<Q>(at, most)?;
+                self.drive::<Q>(at, most, w)?;
             }
         }
         Some(())
@@ -187,13 +223,13 @@ impl Tableau {
 
     /// Drives a row until its slack vanishes or its force is at a bound.
     #[inline(always)]
-    fn drive<Q: Quad>(&mut self, at: usize, most: u32) -> Option<()> {
+    fn drive<Q: Quad>(&mut self, at: usize, most: u32, w: impl Width) -> Option<()> {
         let Place { lo, hi, .. } = self.rows[at];
         let mut x = 0.0;
         loop {
             let z = self.z.as_flattened()[at];
             let s = if z <= 0.0 { 1.0 } else { -1.0 };
-            self.find_rates::<Q>(at, s);
+            self.find_rates::<Q>(at, s, w);
             // The slack has the other sign than the drive, and the diagonal is positive.
             let (mut step, mut event) = (-z / self.rate.as_flattened()[at], Event::Clamp);
             let own = if s > 0.0 { hi - x } else { x - lo };
@@ -207,22 +243,22 @@ impl Tableau {
             if !usable || self.pivots >= most {
                 return None;
             }
-            add_blocks::<Q>(&mut self.z, step, &self.rate);
+            add_blocks::<Q>(&mut self.z[..w.blocks()], step, &self.rate[..w.blocks()]);
             x += step * s;
             match event {
                 Event::Clamp => {
-                    self.pivot::<Q>(at)?;
+                    self.pivot::<Q>(at, w)?;
                     self.put(at, State::Free, x);
                     return Some(());
                 }
                 Event::Bound(state) => {
-                    let w = self.z.as_flattened()[at];
-                    self.put(at, state, w);
+                    let slack = self.z.as_flattened()[at];
+                    self.put(at, state, slack);
                     return Some(());
                 }
                 Event::Change(row) => {
                     let rate = self.rate.as_flattened()[row];
-                    self.pivot::<Q>(row)?;
+                    self.pivot::<Q>(row, w)?;
                     if self.rows[row].is_free() {
                         let state = if rate < 0.0 { State::Lower } else { State::Upper };
                         self.put(row, state, 0.0);
@@ -237,11 +273,13 @@ impl Tableau {
 
     /// Finds how forces and slacks change while a row is driven.
     #[inline(always)]
-    fn find_rates<Q: Quad>(&mut self, at: usize, s: f64) {
-        self.copy_row(at);
+    fn find_rates<Q: Quad>(&mut self, at: usize, s: f64, w: impl Width) {
+        self.copy_row(at, w);
+        let w = w.blocks();
+        let (rate, sign, row) = (&mut self.rate[..w], &self.sign[..w], &self.row[..w]);
         let s = Q::splat(s);
-        for ((rate, sign), row) in self.rate.iter_mut().zip(&self.sign).zip(&self.row) {
-            (s * (Q::load(sign) * Q::load(row))).store(rate);
+        for b in 0..w {
+            (s * (Q::load(&sign[b]) * Q::load(&row[b]))).store(&mut rate[b]);
         }
     }
 
@@ -268,59 +306,63 @@ impl Tableau {
 
     /// Copies a whole row, of which the part left of the diagonal is a column.
     #[inline(always)]
-    fn copy_row(&mut self, p: usize) {
-        let Self { t, row, .. } = self;
-        let width = row.len();
-        row[p / 4..].copy_from_slice(&t[p * width + p / 4..][..width - p / 4]);
-        for (row, t) in row.as_flattened_mut()[..p].iter_mut().zip(t.chunks_exact(width)) {
+    fn copy_row(&mut self, p: usize, w: impl Width) {
+        let w = w.blocks();
+        let (t, row) = (&self.t, &mut self.row[..w]);
+        // What stands left of the diagonal is written over.
+        row.copy_from_slice(&t[p * w..][..w]);
+        for (row, t) in row.as_flattened_mut()[..p].iter_mut().zip(t.chunks_exact(w)) {
             *row = t[p / 4][p & 3];
         }
     }
 
     /// Moves a row from N to C or back. `None` if its diagonal has not the sign that it must have.
     #[inline(always)]
-    fn pivot<Q: Quad>(&mut self, p: usize) -> Option<()> {
+    fn pivot<Q: Quad>(&mut self, p: usize, w: impl Width) -> Option<()> {
         self.pivots += 1;
-        self.copy_row(p);
-        let Self { t, row, scaled, rows, .. } = self;
-        let width = row.len();
+        self.copy_row(p, w);
+        let w = w.blocks();
+        let (row, scaled) = (&self.row[..w], &mut self.scaled[..w]);
+        let t = &mut self.t[..4 * w * w];
         let diagonal = row.as_flattened()[p];
         // What becomes of the row over its diagonal.
-        let sign = if rows[p].is_free() { -1.0 } else { 1.0 };
+        let sign = if self.rows[p].is_free() { -1.0 } else { 1.0 };
         let size = sign * diagonal;
         if size.is_nan() || size <= 0.0 {
             return None;
         }
         let inverse = 1.0 / diagonal;
         let factor = Q::splat(inverse);
-        for (scaled, row) in scaled.iter_mut().zip(&*row) {
-            (factor * Q::load(row)).store(scaled);
+        for b in 0..w {
+            (factor * Q::load(&row[b])).store(&mut scaled[b]);
         }
         // Row p changes too, but is written anew below.
-        for (block, (rows, f)) in t.chunks_exact_mut(4 * width).zip(row.iter()).enumerate() {
-            let (r0, rest) = rows.split_at_mut(width);
-            let (r1, rest) = rest.split_at_mut(width);
-            let (r2, r3) = rest.split_at_mut(width);
-            let blocks = r0[block..].iter_mut().zip(&mut r1[block..]).zip(&mut r2[block..]);
+        for block in 0..w {
+            let rows = &mut t[4 * block * w..][..4 * w];
+            let (r0, rest) = rows.split_at_mut(w);
+            let (r1, rest) = rest.split_at_mut(w);
+            let (r2, r3) = rest.split_at_mut(w);
+            let f = row[block];
             let f = [Q::splat(-f[0]), Q::splat(-f[1]), Q::splat(-f[2]), Q::splat(-f[3])];
-            for ((((r0, r1), r2), r3), scaled) in blocks.zip(&mut r3[block..]).zip(&scaled[block..]) {
-                let scaled = Q::load(scaled);
-                (Q::load(r0) + f[0] * scaled).store(r0);
-                (Q::load(r1) + f[1] * scaled).store(r1);
-                (Q::load(r2) + f[2] * scaled).store(r2);
-                (Q::load(r3) + f[3] * scaled).store(r3);
+            for b in block..w {
+                let scaled = Q::load(&scaled[b]);
+                (Q::load(&r0[b]) + f[0] * scaled).store(&mut r0[b]);
+                (Q::load(&r1[b]) + f[1] * scaled).store(&mut r1[b]);
+                (Q::load(&r2[b]) + f[2] * scaled).store(&mut r2[b]);
+                (Q::load(&r3[b]) + f[3] * scaled).store(&mut r3[b]);
             }
         }
         let sign = Q::splat(sign);
-        for scaled in scaled.iter_mut() {
+        for scaled in &mut *scaled {
             (sign * Q::load(scaled)).store(scaled);
         }
-        for (t, scaled) in t.chunks_exact_mut(width).zip(&scaled.as_flattened()[..p]) {
+        for (t, scaled) in t.chunks_exact_mut(w).zip(&scaled.as_flattened()[..p]) {
             t[p / 4][p & 3] = *scaled;
         }
-        let own = &mut t[p * width + p / 4..][..width - p / 4];
-        own.copy_from_slice(&scaled[p / 4..]);
-        own[0][p & 3] = -inverse;
+        // Left of the diagonal it means nothing.
+        let own = &mut t[p * w..][..w];
+        own.copy_from_slice(scaled);
+        own[p / 4][p & 3] = -inverse;
         Some(())
     }
 }

@@ -3,8 +3,9 @@
 //! Islands of usual size are solved on their rows with bounds alone (`ferrode_lcp::condensed`), the same pivoting in less time.
 //! What that cannot solve to rounding, and larger ones, are solved with all rows.
 
-use super::{RowSystem, SpansByBody};
+use super::{RowSystem, SpansByBody, jacobian};
 use crate::report::{DirectMethod, IslandSolve};
+use crate::rows::Row;
 use crate::solve::Solved;
 use crate::step::{Island, SolverBody};
 use ferrode_lcp::condensed::{CondensedWorkspace, solve_condensed};
@@ -13,7 +14,7 @@ use ferrode_lcp::dense::pad;
 use ferrode_lcp::problem::BoxedLcp;
 use ferrode_lcp::residual::row_residual;
 use ferrode_math::Vec3;
-use ferrode_math::simd::{Compute, compute_wide};
+use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 
 /// Memory of the method.
 #[derive(Clone, Debug, Default)]
@@ -24,8 +25,8 @@ pub(super) struct Workspace {
     first: Vec<u32>,
     /// M⁻¹ Jᵀ, transposed: for each row, linear and angular part for both bodies.
     inv_mass_j: Vec<[[f64; 6]; 2]>,
-    /// J by columns: all rows' entries of a column next to each other, those of the first body first.
-    columns: Vec<f64>,
+    /// J of some rows on one side, four rows at a time by columns; zeros after the last.
+    columns: Vec<[[f64; 4]; 6]>,
     w: Vec<f64>,
     dantzig: DantzigWorkspace,
     condensed: CondensedWorkspace,
@@ -84,22 +85,15 @@ pub(super) fn solve(
 }
 
 impl Workspace {
-    /// J and M⁻¹ Jᵀ of all rows.
+    /// M⁻¹ Jᵀ of all rows.
     fn load_rows(&mut self, island: &Island) {
-        let m = island.rows.len();
         self.inv_mass_j.clear();
-        self.columns.resize(12 * m, 0.0);
         for span in &island.spans {
             let [a, b] = span.bodies.map(|place| island.bodies.get(place as usize));
             for row in &island.rows[span.first..span.first + span.count.rows] {
                 let [l1, a1] = inv_mass_times(a, row.linear1, row.angular1);
                 let [l2, a2] = inv_mass_times(b, row.linear2, row.angular2);
-                let at = self.inv_mass_j.len();
                 self.inv_mass_j.push([six(l1, a1), six(l2, a2)]);
-                let j = [six(row.linear1, row.angular1), six(row.linear2, row.angular2)];
-                for (c, j) in j.as_flattened().iter().enumerate() {
-                    self.columns[c * m + at] = *j;
-                }
             }
         }
     }
@@ -108,12 +102,14 @@ impl Workspace {
     fn build_matrix(&mut self, island: &Island, system: &RowSystem, spans: &SpansByBody) {
         let m = island.rows.len();
         let stride = pad(m);
-        if self.matrix.len() < m * stride {
+        // Zeros are added to up to three numbers behind a row's last.
+        let size = m * stride + 4;
+        if self.matrix.len() < size {
             // Fresh zeroed memory costs nothing until it is touched.
-            self.matrix = vec![0.0; m * stride];
+            self.matrix = vec![0.0; size];
         }
         self.clear_band(island, spans, stride);
-        compute_wide(Products { work: self, island, spans });
+        dispatch_quads(Products { work: self, island, spans });
         for (r, sigma) in system.sigma.iter().enumerate() {
             self.matrix[r * stride + r] += sigma;
         }
@@ -123,6 +119,8 @@ impl Workspace {
     /// diagonal.
     fn clear_band(&mut self, island: &Island, spans: &SpansByBody, stride: usize) {
         self.first.clear();
+        // A zero that the compiler does not know: it would make each row a call.
+        let zero = core::hint::black_box(0.0);
         for span in &island.spans {
             let mut first = span.first;
             for place in span.bodies {
@@ -134,7 +132,12 @@ impl Workspace {
             }
             for row in span.first..span.first + span.count.rows {
                 self.first.push(first as u32);
-                self.matrix[row * stride + first..=row * stride + row].fill(0.0);
+                let numbers = &mut self.matrix[row * stride..][..stride];
+                match numbers.as_chunks_mut::<4>() {
+                    // In whole blocks: beyond the diagonal nothing counts.
+                    (blocks, []) => blocks[first / 4..=row / 4].iter_mut().for_each(|b| *b = [zero; 4]),
+                    (_, numbers) => numbers.fill(zero),
+                }
             }
         }
     }
@@ -173,14 +176,13 @@ struct Products<'a> {
     spans: &'a SpansByBody,
 }
 
-impl Compute for Products<'_> {
+impl QuadKernel for Products<'_> {
     type Out = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<Q: Quad>(self) {
         let Self { work: Workspace { matrix, inv_mass_j, columns, .. }, island, spans } = self;
-        let m = inv_mass_j.len();
-        let stride = pad(m);
+        let stride = pad(inv_mass_j.len());
         for (body, ends) in island.bodies.iter().zip(spans.starts.windows(2)) {
             if body.inv_mass == 0.0 {
                 continue;
@@ -191,27 +193,26 @@ impl Compute for Products<'_> {
             while let Some((span, side)) = runs.first() {
                 let first = island.spans[*span as usize].first;
                 let mut end = first;
-                let here = runs.iter().take_while(|(span, other)| {
+                let mut count = 0;
+                for (span, other) in runs {
                     let span = &island.spans[*span as usize];
-                    let follows = span.first == end && other == side;
-                    if follows {
-                        end += span.count.rows;
+                    if span.first != end || other != side {
+                        break;
                     }
-                    follows
-                });
-                let count = here.count();
-                let columns = &columns[6 * *side as usize * m..][..6 * m];
+                    end += span.count.rows;
+                    count += 1;
+                }
+                load_columns(&island.rows[first..end], *side, columns);
                 // Within the run up to the diagonal, below it all of the run.
                 for r in first..end {
-                    let n = r + 1 - first;
-                    let out = &mut matrix[r * stride + first..][..n];
-                    add_products(out, &inv_mass_j[r][*side as usize], columns, first);
+                    let out = &mut matrix[r * stride + first..];
+                    add_products::<Q>(out, &inv_mass_j[r][*side as usize], &columns[..=(r - first) / 4]);
                 }
                 for (low, low_side) in &at_body[at_body.len() - runs.len() + count..] {
                     let low = &island.spans[*low as usize];
                     for r in low.first..low.first + low.count.rows {
-                        let out = &mut matrix[r * stride + first..][..end - first];
-                        add_products(out, &inv_mass_j[r][*low_side as usize], columns, first);
+                        let out = &mut matrix[r * stride + first..];
+                        add_products::<Q>(out, &inv_mass_j[r][*low_side as usize], columns);
                     }
                 }
                 runs = &runs[count..];
@@ -220,15 +221,33 @@ impl Compute for Products<'_> {
     }
 }
 
-/// Adds to `out` the products of `v` with as many rows from `first` on, of which the columns come one after the other.
+/// Takes J of some rows on one side by columns.
 #[inline(always)]
-fn add_products(out: &mut [f64], v: &[f64; 6], columns: &[f64], first: usize) {
-    let (m, n) = (columns.len() / 6, out.len());
-    let (c0, c1, c2) = (&columns[first..][..n], &columns[m + first..][..n], &columns[2 * m + first..][..n]);
-    let (c3, c4, c5) =
-        (&columns[3 * m + first..][..n], &columns[4 * m + first..][..n], &columns[5 * m + first..][..n]);
-    for i in 0..n {
-        out[i] += (v[0] * c0[i] + v[1] * c1[i] + v[2] * c2[i]) + (v[3] * c3[i] + v[4] * c4[i] + v[5] * c5[i]);
+fn load_columns(rows: &[Row], side: u32, columns: &mut Vec<[[f64; 4]; 6]>) {
+    columns.clear();
+    columns.resize(rows.len().div_ceil(4), [[0.0; 4]; 6]);
+    for (four, columns) in rows.chunks(4).zip(columns) {
+        for (l, row) in four.iter().enumerate() {
+            let (linear, angular) = jacobian(row, side);
+            columns[0][l] = linear.x;
+            columns[1][l] = linear.y;
+            columns[2][l] = linear.z;
+            columns[3][l] = angular.x;
+            columns[4][l] = angular.y;
+            columns[5][l] = angular.z;
+        }
+    }
+}
+
+/// Adds to `out` the products of `v` with the rows of `columns`, in whole fours.
+#[inline(always)]
+fn add_products<Q: Quad>(out: &mut [f64], v: &[f64; 6], columns: &[[[f64; 4]; 6]]) {
+    let (v0, v1, v2) = (Q::splat(v[0]), Q::splat(v[1]), Q::splat(v[2]));
+    let (v3, v4, v5) = (Q::splat(v[3]), Q::splat(v[4]), Q::splat(v[5]));
+    for (out, [c0, c1, c2, c3, c4, c5]) in out.as_chunks_mut::<4>().0.iter_mut().zip(columns) {
+        let linear = v0 * Q::load(c0) + v1 * Q::load(c1) + v2 * Q::load(c2);
+        let angular = v3 * Q::load(c3) + v4 * Q::load(c4) + v5 * Q::load(c5);
+        (Q::load(out) + (linear + angular)).store(out);
     }
 }
 
