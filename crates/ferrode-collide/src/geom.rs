@@ -1,6 +1,7 @@
 //! A shape at a place.
 
 use crate::filter::ALL_BITS;
+use crate::space::TurnedBox;
 use crate::{Frame, Shape};
 use ferrode_math::{Aabb, Pose};
 
@@ -113,6 +114,18 @@ impl Geom {
     /// The user's number.
     pub fn user(&self) -> u64 {
         self.user
+    }
+
+    /// A box that is turned with the geom and holds all of it, where one is known.
+    pub(crate) fn turned_box(&self) -> Option<TurnedBox> {
+        // What others wrote may say what it likes of its box; a field may change its heights as it is asked.
+        if matches!(self.shape, Shape::Custom(_) | Shape::Heightfield(_)) {
+            return None;
+        }
+        let local = self.shape.aabb_in(&Frame::IDENTITY);
+        let frame = Frame::new(self.frame.point_to_world(local.center()), self.frame.rotation);
+        let turned = TurnedBox { frame, half: local.extent() * 0.5 };
+        (turned.half.is_finite() && turned.frame.position.is_finite()).then_some(turned)
     }
 
     /// The world box around the geom.

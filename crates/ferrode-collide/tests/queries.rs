@@ -103,3 +103,40 @@ fn points_agree_with_asking_each_geom() {
         assert!(total > 50, "{total}");
     }
 }
+
+/// A space that has been asked often knows how its geoms are turned; it has to notice when one turns and its box stays.
+#[test]
+fn what_turns_in_its_box_is_hit_where_it_is() {
+    let mut colliders = Colliders::new();
+    let space = colliders.add_space(None, SpaceKind::Bvh).unwrap();
+    let turned = |angle: f64, x: f64| Pose::new(Vec3::X * x, Quat::from_axis_angle(Vec3::Z, angle));
+    let eighth = core::f64::consts::FRAC_PI_4;
+    let plate = Cuboid::new(Vec3::new(2.0, 0.1, 1.0)).unwrap();
+    let mut keys = Vec::new();
+    for i in 0..40 {
+        let geom = Geom::new(plate).at(turned(eighth, 3.0 * f64::from(i)));
+        keys.push(colliders.add_geom(Some(space), geom).unwrap());
+    }
+    // Along z, above the right of the middle and below it: which of the two hit geom `i`.
+    let ask = |colliders: &mut Colliders, i: usize| {
+        let queries = colliders.queries(space).unwrap();
+        [0.4, -0.4].map(|y| {
+            let from = Vec3::new(3.0 * i as f64 + 0.4, y, -5.0);
+            let hit = queries.ray_cast(from, Vec3::Z, 10.0, |_, _| true);
+            assert!(hit.is_none_or(|h| h.geom == keys[i]));
+            hit.is_some()
+        })
+    };
+    for _ in 0..10 {
+        for i in 0..40 {
+            assert_eq!(ask(&mut colliders, i), [true, false]);
+        }
+    }
+    colliders.set_pose(keys[5], turned(-eighth, 15.0)).unwrap();
+    assert_eq!(ask(&mut colliders, 5), [false, true]);
+    // Another shape within the box.
+    colliders.set_shape(keys[6], Sphere::new(0.65).unwrap()).unwrap();
+    assert_eq!(ask(&mut colliders, 6), [true, true]);
+    // And its neighbours are as before.
+    assert_eq!(ask(&mut colliders, 7), [true, false]);
+}

@@ -195,6 +195,15 @@ impl Colliders {
         }
     }
 
+    /// The geom that a proxy stands for, if it does for one.
+    #[inline]
+    pub(super) fn geom_at(&self, id: ProxyId) -> Option<(GeomKey, &Geom)> {
+        match &self.nodes.at(id.0)?.content {
+            Content::Geom(geom) => Some((GeomKey(self.nodes.key_at(id.0)), geom)),
+            Content::Space(_) => None,
+        }
+    }
+
     /// What a proxy stands for.
     pub(super) fn item(&self, id: ProxyId) -> Item {
         let key = self.nodes.key_at(id.0);

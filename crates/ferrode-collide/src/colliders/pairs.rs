@@ -144,17 +144,25 @@ impl Colliders {
         });
     }
 
-    /// Reports the enabled members of a space whose boxes the probe meets within the limit, which `report` may lower.
+    /// Calls `found` with the enabled geoms in a space whose boxes the probe meets within the limit, which it may lower; spaces
+    /// within it included.
     pub(crate) fn seek(
         &self,
         space: SpaceKey,
         probe: &Probe,
         limit: &mut f64,
-        report: &mut dyn FnMut(Item, &mut f64),
+        found: &mut dyn FnMut(GeomKey, &Geom, &mut f64),
     ) {
-        if let Some(node) = self.space_node(space) {
-            node.broad.get().seek(&self.table, probe, limit, &mut |id, limit| report(self.item(id), limit));
-        }
+        let Some(node) = self.space_node(space) else { return };
+        let turned = |id: ProxyId| self.geom_at(id)?.1.turned_box();
+        node.broad.get().seek(&self.table, probe, limit, &turned, &mut |id, limit| match self.geom_at(id) {
+            Some((key, geom)) => found(key, geom, limit),
+            None => {
+                if let Item::Space(inner) = self.item(id) {
+                    self.seek(inner, probe, limit, found);
+                }
+            }
+        });
     }
 
     /// The proxy of a slot with its present box.

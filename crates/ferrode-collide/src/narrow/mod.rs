@@ -103,6 +103,7 @@ pub use merge::ContactMerge;
 pub use ray_capsule::ray_capsule;
 pub use ray_cone::ray_cone;
 pub use ray_convex::ray_convex;
+pub(crate) use ray_cuboid::first_hit as ray_cuboid_hit;
 pub use ray_cuboid::ray_cuboid;
 pub use ray_cylinder::ray_cylinder;
 pub use ray_ellipsoid::ray_ellipsoid;

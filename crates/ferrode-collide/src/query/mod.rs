@@ -62,14 +62,7 @@ impl<'a> Queries<'a> {
 
     /// The enabled geoms whose boxes the probe meets within the limit.
     fn seek(&self, probe: &Probe, limit: &mut f64, found: &mut dyn FnMut(GeomKey, &Geom, &mut f64)) {
-        self.colliders.seek(self.space, probe, limit, &mut |item, limit| match item {
-            Item::Geom(key) => {
-                if let Some(geom) = self.colliders.geom(key) {
-                    found(key, geom, limit);
-                }
-            }
-            Item::Space(space) => Self { space, ..*self }.seek(probe, limit, found),
-        });
+        self.colliders.seek(self.space, probe, limit, found);
     }
 
     /// All enabled geoms.

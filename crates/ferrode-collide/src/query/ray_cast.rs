@@ -5,7 +5,7 @@ use crate::{
     CollideOptions, ColliderError, Colliders, Frame, Geom, GeomContact, GeomKey, Ray, Shape, SpaceKey,
 };
 use core::cell::Cell;
-use ferrode_math::{Vec3, rotation};
+use ferrode_math::{Mat3, Vec3, plane_space};
 
 /// Where a ray met a geom.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,43 +55,77 @@ thread_local! {
 
 /// A ray that is asked of many shapes.
 struct Caster {
-    frame: Frame,
+    origin: Vec3,
+    /// A unit vector.
+    direction: Vec3,
     /// Longest that the ray can be: what it stands for, whatever is asked.
     length: f64,
+    closest: bool,
+    /// For shapes that are asked by way of the table of pairs: made for the first of them.
+    general: Option<General>,
+}
+
+/// The ray as a shape.
+struct General {
+    frame: Frame,
     /// As long as was asked for last.
     ray: Shape,
-    closest: bool,
     contacts: Vec<GeomContact>,
+}
+
+/// The rotation of a ray along a unit vector.
+fn turned_to(direction: Vec3) -> Mat3 {
+    let (p, q) = plane_space(direction);
+    Mat3::from_columns(p, q, direction)
 }
 
 impl Caster {
     /// `None` for a ray without direction or length.
+    #[inline]
     fn new(origin: Vec3, direction: Vec3, length: f64, closest: bool) -> Option<Self> {
-        let rotation = rotation::from_z_axis(direction)?;
+        let direction = direction.normalized()?;
         // As long as a ray may be stands for endless.
         let length = if length > 0.0 { length.min(1e150) } else { length };
-        let mut ray = Ray::new(length).ok()?;
-        ray.closest_hit = closest;
-        let frame = Frame::new(origin, rotation);
-        Some(Self { frame, length, ray: Shape::Ray(ray), closest, contacts: HITS.take() })
+        (length >= 0.0).then_some(Self { origin, direction, length, closest, general: None })
+    }
+
+    /// The first hit with one shape up to `limit`.
+    #[inline]
+    fn first(&mut self, shape: &Shape, frame: &Frame, limit: f64) -> Option<ShapeRayHit> {
+        // The commonest shape without a detour. What is not made of finite numbers is left out, as it is of contacts.
+        if let Shape::Cuboid(cuboid) = shape {
+            let (o, u) = (self.origin, self.direction);
+            let (normal, distance) = narrow::ray_cuboid_hit(o, u, limit, cuboid, frame)?;
+            let position = o + u * distance;
+            let hit = ShapeRayHit { position, normal, distance, side: -1 };
+            return (position.is_finite() && normal.is_finite()).then_some(hit);
+        }
+        self.cast(shape, frame, limit).first().map(ShapeRayHit::from)
     }
 
     /// The hits with one shape up to `limit`.
     fn cast(&mut self, shape: &Shape, frame: &Frame, limit: f64) -> &[GeomContact] {
-        self.contacts.clear();
-        if let Shape::Ray(ray) = &mut self.ray
+        let general = self.general.get_or_insert_with(|| {
+            let mut ray = Ray::UNMEASURED;
+            ray.closest_hit = self.closest;
+            let frame = Frame::new(self.origin, turned_to(self.direction));
+            General { frame, ray: Shape::Ray(ray), contacts: HITS.take() }
+        });
+        general.contacts.clear();
+        if let Shape::Ray(ray) = &mut general.ray
             && !matches!(shape, Shape::Ray(_))
             && ray.set_length(limit).is_ok()
         {
             let max_contacts = if self.closest { 1 } else { u16::MAX };
             let options = CollideOptions { max_contacts, unimportant: false };
-            narrow::collide_frames((&self.ray, &self.frame), (shape, frame), options, &mut self.contacts);
+            let General { frame: own, ray, contacts } = general;
+            narrow::collide_frames((ray, own), (shape, frame), options, contacts);
         }
-        &self.contacts
+        &general.contacts
     }
 }
 
-impl Drop for Caster {
+impl Drop for General {
     fn drop(&mut self) {
         HITS.set(core::mem::take(&mut self.contacts));
     }
@@ -109,7 +143,7 @@ pub fn ray_cast(
     length: f64,
 ) -> Option<ShapeRayHit> {
     let mut caster = Caster::new(origin, direction, length, true)?;
-    caster.cast(shape, frame, caster.length).first().map(ShapeRayHit::from)
+    caster.first(shape, frame, caster.length)
 }
 
 impl Queries<'_> {
@@ -127,16 +161,16 @@ impl Queries<'_> {
         let mut caster = Caster::new(origin, direction, length, true)?;
         let mut best: Option<RayHit> = None;
         let mut limit = caster.length;
-        let probe = Probe::ray(origin, caster.frame.axis(2));
+        let probe = Probe::ray(origin, caster.direction);
         self.seek(&probe, &mut limit, &mut |key, geom, limit| {
             if !filter(key, geom) {
                 return;
             }
-            if let [hit] = caster.cast(geom.shape(), geom.frame(), *limit)
-                && better(hit.point.depth, key, best.as_ref().map(|b| (b.distance, b.geom)))
+            if let Some(hit) = caster.first(geom.shape(), geom.frame(), *limit)
+                && better(hit.distance, key, best.as_ref().map(|b| (b.distance, b.geom)))
             {
-                *limit = hit.point.depth;
-                best = Some(ShapeRayHit::from(hit).of(key));
+                *limit = hit.distance;
+                best = Some(hit.of(key));
             }
         });
         best
@@ -152,10 +186,10 @@ impl Queries<'_> {
     ) -> bool {
         let Some(mut caster) = Caster::new(origin, direction, length, true) else { return false };
         let mut limit = caster.length;
-        let probe = Probe::ray(origin, caster.frame.axis(2));
+        let probe = Probe::ray(origin, caster.direction);
         let mut any = false;
         self.seek(&probe, &mut limit, &mut |key, geom, limit| {
-            if !any && filter(key, geom) && !caster.cast(geom.shape(), geom.frame(), *limit).is_empty() {
+            if !any && filter(key, geom) && caster.first(geom.shape(), geom.frame(), *limit).is_some() {
                 any = true;
                 // Nothing is met before the start: the search ends.
                 *limit = -1.0;
@@ -176,7 +210,7 @@ impl Queries<'_> {
         hits.clear();
         let Some(mut caster) = Caster::new(origin, direction, length, false) else { return };
         let mut limit = caster.length;
-        let probe = Probe::ray(origin, caster.frame.axis(2));
+        let probe = Probe::ray(origin, caster.direction);
         self.seek(&probe, &mut limit, &mut |key, geom, limit| {
             if filter(key, geom) {
                 let found = caster.cast(geom.shape(), geom.frame(), *limit);

@@ -28,6 +28,10 @@ impl Ray {
         })
     }
 
+    /// Of no length yet, all options off.
+    pub(crate) const UNMEASURED: Self =
+        Self { length: 0.0, first_contact: false, backface_cull: false, closest_hit: false };
+
     /// Another length in metres; the options stay.
     #[inline]
     pub(crate) fn set_length(&mut self, length: f64) -> Result<(), ShapeError> {

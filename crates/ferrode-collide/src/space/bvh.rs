@@ -1,6 +1,6 @@
 use super::dynamic_tree::DynamicTree;
 use super::f32_box::Box32;
-use super::{BroadPhase, Members, Probe, Proxy, ProxyId, ProxyTable, Scratch};
+use super::{BroadPhase, Members, Probe, Proxy, ProxyId, ProxyTable, Scratch, TurnedBox};
 use crate::filter::passes;
 use ferrode_math::{Aabb, Vec3};
 
@@ -155,6 +155,9 @@ impl BvhSpace {
                 Home::None | Home::Unbounded => None,
             };
             if old.is_some_and(|leaf| leaf.contains(aabb)) {
+                if home == Home::Still {
+                    self.still.turn(id.0);
+                }
                 continue;
             }
             entry.changed = true;
@@ -381,6 +384,7 @@ impl BroadPhase for BvhSpace {
         table: &ProxyTable,
         probe: &Probe,
         limit: &mut f64,
+        turned: &dyn Fn(ProxyId) -> Option<TurnedBox>,
         report: &mut dyn FnMut(ProxyId, &mut f64),
     ) {
         let mut consider = |id: ProxyId, limit: &mut f64| {
@@ -393,8 +397,9 @@ impl BroadPhase for BvhSpace {
         for &id in &self.unbounded {
             consider(id, limit);
         }
-        self.moving.seek(probe, limit, |id, limit| consider(ProxyId(id), limit));
-        self.still.seek(probe, limit, |id, limit| {
+        // Within its leaf what moves may turn at any time.
+        self.moving.seek(probe, limit, &|_| None, |id, limit| consider(ProxyId(id), limit));
+        self.still.seek(probe, limit, &|id| turned(ProxyId(id)), |id, limit| {
             if self.is_enabled(table, ProxyId(id)) {
                 report(ProxyId(id), limit);
             }

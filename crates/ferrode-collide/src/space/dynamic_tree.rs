@@ -2,6 +2,7 @@
 
 use super::binning::{self, Item};
 use super::f32_box::{Box32, Pending};
+use super::leaf_box::{LeafBox, TurnedBox};
 use super::mirror::{Mirror, Search};
 use super::packed::PackedTree;
 use super::pair_nodes::{Node, Nodes, PairNode};
@@ -409,8 +410,21 @@ impl DynamicTree {
 
     /// The tree with seven boxes to a node, if that is worth while.
     #[inline]
-    fn packed(&self) -> Option<&PackedTree> {
-        self.packed.get(Search::Seek, self.count, || PackedTree::build(self.part(0), |i| self.open(i)))
+    fn packed(&self, turned: &dyn Fn(u32) -> Option<TurnedBox>) -> Option<&PackedTree> {
+        self.packed.get(Search::Seek, self.count, || {
+            let leaf = |payload| match turned(payload) {
+                Some(turned) => LeafBox::new(payload, &turned),
+                None => LeafBox::anywhere(payload),
+            };
+            PackedTree::build_with_boxes(self.part(0), |i| self.open(i), &leaf)
+        })
+    }
+
+    /// For a leaf whose box stays, but not what `turned` says of it in [`seek`](Self::seek).
+    pub fn turn(&mut self, payload: u32) {
+        if let Some(packed) = self.packed.copy_mut() {
+            packed.forget_box(payload);
+        }
     }
 
     /// Visits the leaves below the root that `test` lets through, two siblings at a time.
@@ -439,24 +453,31 @@ impl DynamicTree {
     }
 
     /// Calls `found` with the payload of each leaf that the probe meets within the limit, nearer ones first as far as
-    /// the boxes tell. `found` may lower the limit.
+    /// the boxes tell. `found` may lower the limit. `turned` may know of a tighter box within a leaf's own, until
+    /// [`turn`](Self::turn); leaves whose tighter box a ray misses need not be found.
     #[inline]
-    pub fn seek(&self, probe: &Probe, limit: &mut f64, mut found: impl FnMut(u32, &mut f64)) {
+    pub fn seek(
+        &self,
+        probe: &Probe,
+        limit: &mut f64,
+        turned: &dyn Fn(u32) -> Option<TurnedBox>,
+        mut found: impl FnMut(u32, &mut f64),
+    ) {
         if self.count == 0 {
             return;
         }
         let all = &self.nodes.bounds(0);
-        if probe.enter(all, *limit).is_none() {
-            return;
-        }
         let bundle = probe.bundle(all).filter(|_| self.count < PackedTree::MOST);
         if let Some(bundle) = &bundle {
-            if let Some(packed) = self.packed() {
-                packed.seek(bundle, limit, |payload, _, limit| found(payload, limit));
+            if let Some(packed) = self.packed(turned) {
+                packed.seek_boxes(bundle, limit, found);
                 return;
             }
         } else if let Some(wide) = self.wide(Search::Seek) {
             wide.seek(probe, limit, |payload, _, limit| found(payload, limit));
+            return;
+        }
+        if probe.enter(all, *limit).is_none() {
             return;
         }
         match probe.lanes(all) {
@@ -617,8 +638,8 @@ mod tests {
                 let (binary, asked) = (tree.clone(), tree.clone());
                 (0..=count).for_each(|_| asked.query(&items[0].1, |_| {}));
                 assert!(asked.wide(Search::Query).is_some() && binary.wide(Search::Query).is_none());
-                (0..=count).for_each(|_| _ = asked.packed());
-                assert!(asked.packed().is_some());
+                (0..=count).for_each(|_| _ = asked.packed(&|_| None));
+                assert!(asked.packed(&|_| None).is_some());
                 assert_eq!(list(&asked), list(&binary));
                 let along_axis = Vec3::new(0.0, path.y, 0.0);
                 for probe in [
@@ -634,14 +655,14 @@ mod tests {
                         let first = missing.iter().filter_map(|&i| met(i)).min_by(f64::total_cmp);
                         for tree in [&asked, &binary] {
                             let (mut limit, mut nearest) = (most, None);
-                            tree.seek(&probe, &mut limit, |i, limit| {
+                            tree.seek(&probe, &mut limit, &|_| None, |i, limit| {
                                 if let Some(at) = met(i).filter(|at| at <= limit) {
                                     (*limit, nearest) = (at, Some(at));
                                 }
                             });
                             assert_eq!(nearest, first);
                         }
-                        asked.seek(&probe, &mut { most }, |i, _| {
+                        asked.seek(&probe, &mut { most }, &|_| None, |i, _| {
                             missing.remove(&i);
                         });
                         assert!(missing.is_empty(), "{count} {probe:?} {missing:?}");

@@ -85,15 +85,13 @@ impl Box32 {
 
 /// Depth-first searches keep what they have yet to visit here: on the stack unless the tree is very deep.
 #[derive(Debug)]
-pub(crate) struct Pending<T> {
+pub(crate) struct Pending<T, const FIRST: usize = 64> {
     first: [T; FIRST],
     len: usize,
     spilled: Vec<T>,
 }
 
-const FIRST: usize = 64;
-
-impl<T: Copy + Default> Pending<T> {
+impl<T: Copy + Default, const FIRST: usize> Pending<T, FIRST> {
     #[inline]
     pub fn new() -> Self {
         Self { first: [T::default(); FIRST], len: 0, spilled: Vec::new() }
@@ -103,32 +101,6 @@ impl<T: Copy + Default> Pending<T> {
     pub fn push(&mut self, node: T) {
         if self.len < FIRST {
             self.first[self.len] = node;
-            self.len += 1;
-        } else {
-            self.spilled.push(node);
-        }
-    }
-
-    /// How many wait, up to those that the stack has room for.
-    #[inline(always)]
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    /// As [`push`](Self::push), but comes after the lesser ones of those that were pushed when there were `bottom`; these must
-    /// be in order.
-    #[inline(always)]
-    pub fn push_sorted(&mut self, node: T, bottom: usize)
-    where
-        T: PartialOrd,
-    {
-        if self.len < FIRST {
-            let mut k = self.len;
-            while k > bottom && self.first[k - 1] < node {
-                self.first[k] = self.first[k - 1];
-                k -= 1;
-            }
-            self.first[k] = node;
             self.len += 1;
         } else {
             self.spilled.push(node);

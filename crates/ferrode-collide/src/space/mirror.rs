@@ -42,6 +42,11 @@ impl<T> Mirror<T> {
         }
     }
 
+    /// The copy, if there is one.
+    pub fn copy_mut(&mut self) -> Option<&mut T> {
+        self.tree.get_mut()
+    }
+
     /// The copy of a tree of so many leaves, once as much has been spent as it costs.
     #[inline]
     pub fn get(&self, search: Search, leaves: usize, make: impl FnOnce() -> T) -> Option<&T> {

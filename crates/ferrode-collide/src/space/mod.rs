@@ -9,6 +9,7 @@ mod bvh;
 pub(crate) mod dynamic_tree;
 pub(crate) mod f32_box;
 mod hash;
+mod leaf_box;
 mod mirror;
 mod packed;
 mod pair_nodes;
@@ -24,6 +25,7 @@ use ferrode_math::Aabb;
 
 pub use bvh::BvhSpace;
 pub use hash::HashSpace;
+pub use leaf_box::TurnedBox;
 pub use probe::Probe;
 pub use proxy::{Members, Proxy, ProxyId, ProxyTable};
 pub use quadtree::QuadtreeSpace;
@@ -66,12 +68,15 @@ pub trait BroadPhase {
         }
     }
     /// Reports every enabled member whose box the probe meets within the limit, nearer ones first as far as the
-    /// structure tells. `report` may lower the limit.
+    /// structure tells. `report` may lower the limit. `turned` may know of a box that holds all of a member and is tighter than
+    /// the one in the table; it stays until the member is [`moved`](Self::moved). A member whose tighter box is missed need not
+    /// be reported.
     fn seek(
         &self,
         table: &ProxyTable,
         probe: &Probe,
         limit: &mut f64,
+        _turned: &dyn Fn(ProxyId) -> Option<TurnedBox>,
         report: &mut dyn FnMut(ProxyId, &mut f64),
     ) {
         for id in self.members().iter(table) {

@@ -14,6 +14,7 @@ const SLACK: f64 = 8.0 * f64::EPSILON;
 pub struct Probe {
     kind: Kind,
     origin: [f64; 3],
+    direction: [f64; 3],
     /// Of the direction.
     inverse: [f64; 3],
     half: [f64; 3],
@@ -30,13 +31,17 @@ enum Kind {
 
 impl Probe {
     /// A ray. The direction need not be a unit vector.
+    #[inline]
     pub fn ray(origin: Vec3, direction: Vec3) -> Self {
+        let inverse = [1.0 / direction.x, 1.0 / direction.y, 1.0 / direction.z];
         Self {
             kind: Kind::Ray,
             origin: origin.to_array(),
-            inverse: direction.to_array().map(|x| 1.0 / x),
+            direction: direction.to_array(),
+            inverse,
             half: [0.0; 3],
-            flat: direction.to_array().iter().any(|x| !(1.0 / x).is_finite()),
+            // What is not finite makes this NaN.
+            flat: !(inverse[0] * 0.0 + inverse[1] * 0.0 + inverse[2] * 0.0 == 0.0),
         }
     }
 
@@ -163,21 +168,30 @@ impl Probe {
         if self.kind == Kind::Near {
             return None;
         }
-        let mut bundle = Bundle { origin: [[0.0; 2]; 3], inverse: [0.0; 3], near: [0; 3] };
-        let mut fits = true;
+        let mut bundle = Bundle { origin: [[0.0; 2]; 3], inverse: [0.0; 3], near: [0; 3], line: None };
+        let (mut fits, mut farthest, mut square) = (true, 0.0, 0.0);
         for i in 0..3 {
-            // Across an axis the ray is taken to go along it by next to nothing.
-            let inverse = self.inverse[i].clamp(-STEEPEST, STEEPEST);
-            let sign = if inverse < 0.0 { -1.0 } else { 1.0 };
+            // Across an axis the ray is taken to go along it by next to nothing. What is not a number stays so.
+            let inverse = greater(-STEEPEST, lesser(STEEPEST, self.inverse[i]));
             let most = greater(f64::from(all.max[i]), -f64::from(all.min[i]));
-            // Rounding of the origin, of boxes and of differences, as a length.
             let reach = self.origin[i].abs() + most + self.half[i];
-            // A box that moves is a ray among boxes that are larger by it.
-            let pad = (self.half[i] + reach * (2.0 * ROUNDING)) * sign;
+            // A box that moves is a ray among boxes that are larger by it. All that is rounded on the way to where a side is met
+            // (the origin, the difference from it, the reciprocal, two products and a sum) is so by a part of its size, and the
+            // sizes are `reach` or twice that times the reciprocal: as a length, less than 16 times 2⁻²⁴ of it.
+            let pad = (self.half[i] + reach * (4.0 * ROUNDING)).copysign(inverse);
             bundle.origin[i] = [(self.origin[i] + pad) as f32, (self.origin[i] - pad) as f32];
             bundle.inverse[i] = inverse as f32;
-            bundle.near[i] = usize::from(sign < 0.0);
+            bundle.near[i] = usize::from(inverse < 0.0);
             fits &= (reach <= Bundle::REACH) & (inverse.abs() >= Bundle::FLATTEST);
+            farthest = greater(reach, farthest);
+            square += self.direction[i] * self.direction[i];
+        }
+        if (self.kind == Kind::Ray) & ((square - 1.0).abs() < 1e-6) {
+            bundle.line = Some(Line {
+                origin: [self.origin[0] as f32, self.origin[1] as f32, self.origin[2] as f32],
+                direction: [self.direction[0] as f32, self.direction[1] as f32, self.direction[2] as f32],
+                pad: (farthest * Line::ROUNDING) as f32 + f32::MIN_POSITIVE,
+            });
         }
         fits.then_some(bundle)
     }
@@ -271,6 +285,23 @@ pub(crate) struct Bundle {
     pub inverse: [f32; 3],
     /// Along each axis the side that the ray meets first.
     pub near: [usize; 3],
+    /// Of a ray of unit direction the line that it is on.
+    pub line: Option<Line>,
+}
+
+/// A line for boxes that are turned.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Line {
+    pub origin: [f32; 3],
+    pub direction: [f32; 3],
+    /// How far from a box, times the sine of an angle, the line may seem to be for rounding.
+    pub pad: f32,
+}
+
+impl Line {
+    /// Of the largest coordinate in sight. Of single precision's 2⁻²⁴ there are less than 80 in differences of coordinates,
+    /// three products with axes each, and two products of the results.
+    const ROUNDING: f64 = 1.0 / (1u64 << 16) as f64;
 }
 
 impl Bundle {
@@ -278,9 +309,6 @@ impl Bundle {
     const REACH: f64 = 1e8;
     /// Least reciprocal: times the step of a node it is more than nothing.
     const FLATTEST: f64 = 1e-12;
-    /// What is left is multiplied by it.
-    pub const WIDER: f32 = WIDER;
-
     /// A limit in single precision, not below the one given.
     #[inline(always)]
     pub fn limit(limit: f64) -> f32 {

@@ -3,7 +3,7 @@
 //! Where [`Lanes`](super::Lanes) have as many lanes as the machine likes, an octet has eight, whose comparisons are a number's bits. All
 //! operations are those of the lanes one by one, so the bits are the same on every machine.
 
-use core::ops::{Add, Mul};
+use core::ops::{Add, Mul, Sub};
 
 /// A computation that is written once for registers of any width.
 ///
@@ -20,11 +20,15 @@ pub trait OctetKernel {
 ///
 /// The types that implement it can't be named outside: a kernel gets one from [`dispatch_octets`], which knows that the machine has
 /// the instructions.
-pub trait Octet: Copy + Add<Output = Self> + Mul<Output = Self> {
+pub trait Octet: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// The same number eight times.
     fn splat(x: f32) -> Self;
     /// The bytes as numbers from 0 to 255.
     fn from_bytes(bytes: &[u8; 8]) -> Self;
+    /// Times 2 to the power of `word`'s highest byte, read with a sign. The power is added to the exponent: this is the product where
+    /// number and product are normal, as the caller has to see to.
+    #[must_use]
+    fn scale(self, word: u32) -> Self;
     /// The numbers as an array.
     fn store(self) -> [f32; 8];
     /// `self` where that is smaller than `b`, else `b`.
@@ -42,7 +46,12 @@ pub trait Octet: Copy + Add<Output = Self> + Mul<Output = Self> {
 pub fn dispatch_octets<K: OctetKernel>(kernel: K) -> K::Out {
     #[cfg(target_arch = "x86_64")]
     {
-        if std::arch::is_x86_feature_detected!("avx2") {
+        // All machines with AVX2 have the others too.
+        if std::arch::is_x86_feature_detected!("avx2")
+            && std::arch::is_x86_feature_detected!("bmi1")
+            && std::arch::is_x86_feature_detected!("bmi2")
+            && std::arch::is_x86_feature_detected!("popcnt")
+        {
             // SAFETY: the machine has the instructions.
             return unsafe { super::octet_x86::run_avx2(kernel) };
         }
@@ -59,7 +68,7 @@ pub(super) struct Array([f32; 8]);
 
 #[cfg(any(test, not(target_arch = "x86_64")))]
 mod array {
-    use super::{Add, Array, Mul, Octet};
+    use super::{Add, Array, Mul, Octet, Sub};
 
     #[inline(always)]
     fn each(a: Array, b: Array, f: impl Fn(f32, f32) -> f32) -> Array {
@@ -71,6 +80,14 @@ mod array {
         #[inline(always)]
         fn add(self, b: Self) -> Self {
             each(self, b, |x, y| x + y)
+        }
+    }
+
+    impl Sub for Array {
+        type Output = Self;
+        #[inline(always)]
+        fn sub(self, b: Self) -> Self {
+            each(self, b, |x, y| x - y)
         }
     }
 
@@ -91,6 +108,12 @@ mod array {
         #[inline(always)]
         fn from_bytes(bytes: &[u8; 8]) -> Self {
             Self(bytes.map(f32::from))
+        }
+
+        #[inline(always)]
+        fn scale(self, word: u32) -> Self {
+            let exponent = (word & 0xff00_0000).cast_signed() >> 1;
+            Self(self.0.map(|x| f32::from_bits(x.to_bits().wrapping_add_signed(exponent))))
         }
 
         #[inline(always)]
@@ -139,6 +162,9 @@ mod tests {
                 wide.max(mixed),
                 mixed.max(wide),
                 mixed.max(bytes * O::splat(0.02)),
+                mixed - bytes,
+                (bytes + O::splat(0.3)).scale(0xf712_3456),
+                (bytes + O::splat(0.3)).scale(0x0998_7654),
                 mixed.min(nan),
                 nan.max(mixed),
                 zeros.0,
@@ -158,6 +184,10 @@ mod tests {
         let plain = All.run::<Array>();
         assert_eq!(plain.1, [0b0001_1111, 0b1111_1110, 0]);
         assert_eq!(dispatch_octets(All), plain);
+        let scaled = |byte: i8| {
+            Array::splat(0.3).scale(u32::from_le_bytes([1, 2, 3, byte.cast_unsigned()])).store()[0]
+        };
+        assert_eq!([scaled(-60), scaled(0), scaled(7)], [0.3 / (1u64 << 60) as f32, 0.3, 0.3 * 128.0]);
         #[cfg(target_arch = "x86_64")]
         assert_eq!(All.run::<super::super::octet_x86::Two>(), plain);
     }

@@ -5,13 +5,13 @@
 
 use super::{Octet, OctetKernel};
 use core::arch::x86_64::*;
-use core::ops::{Add, Mul};
+use core::ops::{Add, Mul, Sub};
 
 /// Runs a kernel with octets of AVX2.
 ///
 /// # Safety
-/// The machine has AVX2.
-#[target_feature(enable = "avx,avx2")]
+/// The machine has AVX2, and these instructions for bits.
+#[target_feature(enable = "avx,avx2,bmi1,bmi2,popcnt")]
 pub(super) unsafe fn run_avx2<K: OctetKernel>(kernel: K) -> K::Out {
     kernel.run::<One>()
 }
@@ -31,6 +31,15 @@ impl Add for One {
     fn add(self, b: Self) -> Self {
         // SAFETY: values of the type are only made where the machine has AVX2.
         Self(unsafe { _mm256_add_ps(self.0, b.0) })
+    }
+}
+
+impl Sub for One {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        // SAFETY: as in `add`.
+        Self(unsafe { _mm256_sub_ps(self.0, b.0) })
     }
 }
 
@@ -57,6 +66,17 @@ impl Octet for One {
         let bytes = i64::from_le_bytes(*bytes);
         // SAFETY: the machine has AVX2.
         Self(unsafe { _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_cvtsi64_si128(bytes))) })
+    }
+
+    #[inline(always)]
+    fn scale(self, word: u32) -> Self {
+        // SAFETY: as in `add`.
+        unsafe {
+            let top = _mm256_set1_epi32(0xff00_0000u32.cast_signed());
+            let exponent =
+                _mm256_srai_epi32::<1>(_mm256_and_si256(_mm256_set1_epi32(word.cast_signed()), top));
+            Self(_mm256_castsi256_ps(_mm256_add_epi32(_mm256_castps_si256(self.0), exponent)))
+        }
     }
 
     #[inline(always)]
@@ -103,6 +123,15 @@ impl Add for Two {
     }
 }
 
+impl Sub for Two {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        // SAFETY: as in `add`.
+        self.each(b, |x, y| unsafe { _mm_sub_ps(x, y) })
+    }
+}
+
 impl Mul for Two {
     type Output = Self;
     #[inline(always)]
@@ -128,6 +157,16 @@ impl Octet for Two {
             let words = _mm_unpacklo_epi8(_mm_cvtsi64_si128(bytes), zero);
             let (low, high) = (_mm_unpacklo_epi16(words, zero), _mm_unpackhi_epi16(words, zero));
             Self([_mm_cvtepi32_ps(low), _mm_cvtepi32_ps(high)])
+        }
+    }
+
+    #[inline(always)]
+    fn scale(self, word: u32) -> Self {
+        // SAFETY: as in `add`.
+        unsafe {
+            let top = _mm_set1_epi32(0xff00_0000u32.cast_signed());
+            let exponent = _mm_srai_epi32::<1>(_mm_and_si128(_mm_set1_epi32(word.cast_signed()), top));
+            Self(self.0.map(|x| _mm_castsi128_ps(_mm_add_epi32(_mm_castps_si128(x), exponent))))
         }
     }
 

@@ -1,5 +1,7 @@
+use super::node::power_of_two;
 use super::*;
-use crate::space::Probe;
+use crate::Frame;
+use crate::space::{Probe, TurnedBox};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Aabb, Vec3};
 use proptest::prelude::*;
@@ -124,17 +126,113 @@ fn boxes_in_bytes_hold_those_that_they_stand_for() {
         assert_eq!(seven.used().count_ones() as usize, boxes.len());
         for (l, b) in boxes.iter().enumerate() {
             for axis in 0..3 {
-                let side = |q: u8| f64::from(seven.origin[axis]) + f64::from(q) * f64::from(seven.step(axis));
+                let step = power_of_two(seven.exponent(axis));
+                let side = |q: u8| f64::from(seven.origin[axis]) + f64::from(q) * step;
                 let [low, high] = [0, 1].map(|k| side(seven.sides[axis][k][l]));
                 // Numbers in double precision, added with an error of their own.
                 let hair = 4.0 * f64::EPSILON * far.abs_max().max(scale);
                 assert!(low <= f64::from(b.min[axis]) + hair && high + hair >= f64::from(b.max[axis]));
                 // And not by more than a step.
-                let step = f64::from(seven.step(axis)) + hair;
+                let step = step + hair;
                 assert!(low + step >= f64::from(b.min[axis]) && high - step <= f64::from(b.max[axis]));
             }
         }
     }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, rng_seed: seed(), ..Default::default() })]
+
+    /// No ray that meets a turned box passes by it in single precision, and few that miss it by much seem to meet it.
+    #[test]
+    fn turned_boxes_that_a_ray_meets_are_met(
+        seed in any::<u32>(),
+        offset in prop::sample::select(vec![0.0, 1.0, 100.0, 1e4, 1e6, 4e7]),
+        size in prop::sample::select(vec![1e-6, 1e-3, 0.1, 1.0, 40.0, 1e5]),
+    ) {
+        let mut numbers = OdeRandom::new(seed);
+        let mut random = || f64::from(numbers.next_u32()) / 4294967296.0;
+        let mut vector = || Vec3::new(random() - 0.5, random() - 0.5, random() - 0.5) * 2.0;
+        let far = vector() * offset;
+        for round in 0..60 {
+            let axis = vector().normalized_or(Vec3::Z);
+            let mut half = vector().abs() * size;
+            if round % 5 == 0 {
+                half[round % 3] = 0.0;
+            }
+            let rotation = ferrode_math::Quat::from_axis_angle(axis, vector().x * 4.0);
+            // Some lie along the axes of the world, and so does the ray of the same round.
+            let straight = round % 4 == 0;
+            let rotation = if straight { ferrode_math::Quat::IDENTITY } else { rotation };
+            let frame = Frame::new(far + vector() * size, rotation.to_matrix());
+            let turned = TurnedBox { frame, half };
+            let leaf = LeafBox::new(7, &turned);
+            let corner = frame.point_to_world(half).abs_max().max(frame.point_to_world(-half).abs_max());
+            let reach = corner + 3.0 * size;
+            let all = Box32 { min: [-reach as f32; 3], max: [reach as f32; 3] };
+            // A point on the surface or within, mostly a corner or on an edge.
+            let mut inner = vector();
+            for k in 0..3 {
+                if (round >> k) % 3 != 0 {
+                    inner[k] = inner[k].signum();
+                }
+            }
+            let target = frame.point_to_world(inner.component_mul(half));
+            let mut direction = vector().normalized_or(Vec3::X);
+            if straight {
+                direction = [Vec3::X, -Vec3::Y, Vec3::Z][round % 3];
+            }
+            let from = target - direction * (vector().x.abs() * 3.0 * (size + offset));
+            if let Some(bundle) = Probe::ray(from, direction).bundle(&all) {
+                let line = bundle.line.expect("a unit direction");
+                prop_assert!(leaf.is_met(&line), "{from:?} {direction:?} {turned:?}");
+                prop_assert!(LeafBox::anywhere(7).is_met(&line));
+                // Beside it by more than its diagonal.
+                let aside = ferrode_math::plane_space(direction).0 * (2.0 * half.length() + 1e-3 * reach);
+                let beside = Probe::ray(from + aside, direction).bundle(&all).and_then(|b| b.line);
+                prop_assert!(beside.is_none_or(|line| !leaf.is_met(&line)));
+            }
+        }
+    }
+}
+
+/// A tree as lopsided as can be, all of whose boxes are met, lets more wait than there is room for in registers and beside.
+#[test]
+fn what_waits_may_be_much() {
+    let count = 400u32;
+    let bounds = |i: u32| Box32 { min: [f64::from(i) as f32 * 0.001, 0.0, 0.0], max: [2.0; 3] };
+    let part = |first: u32| Part {
+        bounds: bounds(first),
+        leaf: (first + 1 == count).then_some((first, 1)),
+        of: first,
+    };
+    let open = |first: u32| [Part { leaf: Some((first, 1)), ..part(first) }, part(first + 1)];
+    let turned =
+        |payload| LeafBox::new(payload, &TurnedBox { frame: Frame::IDENTITY, half: Vec3::splat(2.0) });
+    let (rows, boxed) =
+        (PackedTree::build(part(0), open), PackedTree::build_with_boxes(part(0), open, &turned));
+    for direction in [Vec3::X, -Vec3::X, Vec3::new(0.6, 0.0, 0.8)] {
+        let bundle =
+            Probe::ray(Vec3::splat(1.0) - direction * 5.0, direction).bundle(rows.bounds()).expect("near");
+        let (mut first, mut second) = (Vec::new(), Vec::new());
+        rows.seek(&bundle, &mut 10.0, |i, n, _| first.push(i + n - 1));
+        boxed.seek_boxes(&bundle, &mut 10.0, |i, _| second.push(i));
+        for mut found in [first, second] {
+            found.sort_unstable();
+            assert!(found.into_iter().eq(0..count));
+        }
+    }
+}
+
+#[test]
+fn a_leaf_keeps_its_numbers() {
+    let leaf = LeafBox {
+        axes: [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]],
+        half: [10.0, 11.0, 12.0],
+        center: [13.0, 14.0, 15.0],
+        payload: 16,
+    };
+    assert_eq!(format!("{leaf:?}"), format!("{:?}", Seven::leaf(&leaf).as_leaf()));
 }
 
 #[test]
