@@ -137,7 +137,7 @@ impl Colliders {
                 next = self.space_at(space).and_then(|s| s.broad.members().after(&self.table, id));
             }
         }
-        self.refresh_aabb(space);
+        // Its own box is for whoever asks for it: that is a walk over all members.
         if let Some(Content::Space(node)) = self.nodes.at_mut(space).map(|n| &mut n.content) {
             node.broad.get_mut().update(&self.table);
         }
