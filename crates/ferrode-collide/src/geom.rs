@@ -118,8 +118,8 @@ impl Geom {
 
     /// A box that is turned with the geom and holds all of it, where one is known.
     pub(crate) fn turned_box(&self) -> Option<TurnedBox> {
-        // What others wrote may say what it likes of its box; a field may change its heights as it is asked.
-        if matches!(self.shape, Shape::Custom(_) | Shape::Heightfield(_)) {
+        // What others wrote may say what it likes of its box; a field may change its heights as it is asked; compounds may have such parts.
+        if matches!(self.shape, Shape::Custom(_) | Shape::Heightfield(_) | Shape::Compound(_)) {
             return None;
         }
         let local = self.shape.aabb_in(&Frame::IDENTITY);
