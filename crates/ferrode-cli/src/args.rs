@@ -80,6 +80,8 @@ pub struct RunArgs {
     pub threads: usize,
     /// Whether each step of `direct` ends with the joints closed.
     pub project: bool,
+    /// Whether impacts of `direct` follow each other, pair after pair.
+    pub in_turn: bool,
     /// Where to record to.
     pub record: Option<PathBuf>,
     /// Record each so many steps.
@@ -333,6 +335,12 @@ pub fn command() -> Command {
                 .help("With the stepper direct: bodies end each step where their joints hold together"),
         )
         .arg(
+            Arg::new("in-turn")
+                .long("in-turn")
+                .action(ArgAction::SetTrue)
+                .help("With the stepper direct: what bounces does so in turn, the fastest pair first, and not all at once"),
+        )
+        .arg(
             Arg::new("record").long("record").value_name("OUT").value_parser(recording).help(
                 "Write places and velocities of links and joints to OUT.csv,\nor to OUT.jsonl (a JSON object a line), or for Rerun to OUT.rrd\n(if built with the feature rerun)",
             ),
@@ -428,6 +436,7 @@ where
                 }),
                 threads: m.get_one::<u16>("threads").copied().unwrap_or(1).into(),
                 project: m.get_flag("project"),
+                in_turn: m.get_flag("in-turn"),
                 record: m.get_one::<PathBuf>("record").cloned(),
                 every: m.get_one("every").copied().unwrap_or(1),
                 json: m.get_flag("json"),
@@ -495,18 +504,19 @@ mod tests {
 
     #[test]
     fn everything_is_taken_over() {
-        let line = "ferrode run a.sdf --steps 7 --dt 2e-3 --stepper direct --project --threads 3 --record o.csv --every 3 --ground \
+        let line = "ferrode run a.sdf --steps 7 --dt 2e-3 --stepper direct --project --in-turn --threads 3 --record o.csv --every 3 --ground \
                     --height -0.5 --fix base --fix tip --hold 20,0.5 --json --quiet --strict --model-path m";
         let Task::Run(run) = parse(line.split_whitespace()).unwrap() else { panic!("another task") };
         assert_eq!(run.length, Length::Steps(7));
-        assert_eq!((run.stepper, run.project, run.threads), (Some(Stepper::Direct), true, 3));
+        assert_eq!((run.stepper, run.threads), (Some(Stepper::Direct), 3));
+        assert!(run.project && run.in_turn);
         assert_eq!((run.setup.dt, run.setup.height, run.setup.ground), (Some(0.002), Some(-0.5), true));
         assert_eq!((run.setup.fix.len(), run.setup.hold), (2, Some([20.0, 0.5])));
         assert_eq!((run.every, run.json, run.quiet, run.file.strict), (3, true, true, true));
         assert_eq!(run.record.unwrap().to_str(), Some("o.csv"));
         let Task::Run(run) = parse(["ferrode", "run", "a.sdf"]).unwrap() else { panic!("another task") };
         assert_eq!((run.length, run.stepper, run.every, run.threads), (Length::Time(5.0), None, 1, 1));
-        assert!(!run.project);
+        assert!(!run.project && !run.in_turn);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::record::Recorder;
 use crate::simulation::Simulation;
 use crate::stats::Stats;
 use crate::summary::Summary;
-use ferrode::{DirectSettings, Stepper, World};
+use ferrode::{ImpactLaw, Stepper, World};
 use ferrode_scene::Warning;
 use std::io::Write;
 use std::time::Instant;
@@ -22,9 +22,7 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     if let Some(stepper) = args.stepper {
         simulation.world_mut().stepper = stepper;
     }
-    if args.project {
-        project_joints(simulation.world_mut())?;
-    }
+    set_direct(simulation.world_mut(), args)?;
     if !args.quiet {
         print_warnings(&simulation.warnings);
     }
@@ -60,13 +58,19 @@ pub fn run(args: &RunArgs) -> Result<Exit, Failure> {
     })
 }
 
-/// Has each step end with the joints closed.
-fn project_joints(world: &mut World) -> Result<(), Failure> {
-    if world.stepper != Stepper::Direct {
+/// Takes over the options that are for the stepper `direct` alone.
+fn set_direct(world: &mut World, args: &RunArgs) -> Result<(), Failure> {
+    let options = [("--project", args.project), ("--in-turn", args.in_turn)];
+    let given = options.into_iter().find(|(_, given)| *given);
+    if let Some((option, _)) = given.filter(|_| world.stepper != Stepper::Direct) {
         let name = stepper_name(world.stepper);
-        return Err(Failure::usage(format_args!("--project is for the stepper direct, not for {name}")));
+        return Err(Failure::usage(format_args!("{option} is for the stepper direct, not for {name}")));
     }
-    let settings = DirectSettings { project_joints: true, ..*world.direct() };
+    let mut settings = *world.direct();
+    settings.project_joints |= args.project;
+    if args.in_turn {
+        settings.impacts = ImpactLaw::InTurn;
+    }
     world.set_direct(settings);
     Ok(())
 }

@@ -56,7 +56,7 @@ pub use report::{DirectMethod, IslandSolve, StepReport};
 pub use rows::{NO_FRICTION_INDEX, Row, RowKind};
 pub use sleep::AutoDisable;
 pub use softness::Softness;
-pub use solve::direct::{DirectSettings, FrictionLaw};
+pub use solve::direct::{DirectSettings, FrictionLaw, ImpactLaw};
 pub use solve::substep::{ContactManifold, MANIFOLD_POINTS, ManifoldPoint, Spring, SubstepSettings};
 pub use step::Stepper;
 pub use timing::{StepClock, StepTimes};

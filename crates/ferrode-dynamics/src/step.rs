@@ -1,6 +1,7 @@
 //! One step: the table of contents of the engine.
 
 mod fast;
+mod impacts;
 mod project;
 
 use crate::body::{Body, BodyKey};
@@ -9,7 +10,8 @@ use crate::foreign::MovedObserver;
 use crate::island::Islands;
 use crate::joint::Joint;
 use crate::rows::{JointRows, Row, RowCount, Wrench};
-use crate::solve::{direct, quick, substep};
+use crate::solve::direct::{self, ImpactLaw};
+use crate::solve::{quick, substep};
 use crate::timing::Phase;
 use crate::{Error, StepReport, World, gyroscopic, integrate};
 use ferrode_math::random::OdeRandom;
@@ -87,6 +89,7 @@ struct Stepping {
     direct: direct::Workspace,
     quick: quick::Workspace,
     fast: fast::Workspace,
+    impacts: impacts::Workspace,
     /// The island once more, with the bodies where the step has brought them.
     moved_island: Island,
 }
@@ -167,7 +170,8 @@ impl World {
         report.clear();
         self.timing.begin();
         let mut stepping = self.scratch.stepping.take().unwrap_or_default();
-        let Stepping { islands, island, moved_island, direct, quick, .. } = &mut *stepping;
+        let Stepping { islands, island, moved_island, direct, quick, impacts, .. } = &mut *stepping;
+        let in_turn = stepper == Stepper::Direct && self.params.direct.impacts == ImpactLaw::InTurn;
 
         self.quarantine_unusable_bodies(report);
         self.auto_disable_bodies(h);
@@ -186,6 +190,9 @@ impl World {
             };
 
             self.gather(bodies, joints, island);
+            if in_turn {
+                self.collide_in_turn(island, impacts);
+            }
             self.apply_gravity(bodies, island);
             self.apply_gyroscopic_torques(bodies, island, h);
             self.count_rows(island, &ctx);
@@ -336,9 +343,10 @@ impl World {
     fn apply_gyroscopic_torques(&self, bodies: &[u32], island: &mut Island, h: f64) {
         for (index, solver_body) in bodies.iter().zip(&mut island.bodies) {
             let body = self.bodies.at(*index);
-            if body.gyroscopic_mode && !body.is_kinematic() && body.frame.angular_velocity != Vec3::ZERO {
+            let velocity = solver_body.frame.angular_velocity;
+            if body.gyroscopic_mode && !body.is_kinematic() && velocity != Vec3::ZERO {
                 let inertia = body.inertia_world();
-                solver_body.torque += gyroscopic::torque(&inertia, body.frame.angular_velocity, h);
+                solver_body.torque += gyroscopic::torque(&inertia, velocity, h);
             }
         }
     }

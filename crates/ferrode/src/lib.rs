@@ -36,10 +36,11 @@ pub use ferrode_collide::{
 };
 pub use ferrode_dynamics::{
     AMotor, AMotorMode, AutoDisable, AxisFrame, Ball, Body, BodyKey, Contact, DBall, DHinge, Damping,
-    DirectMethod, DirectSettings, FiniteRotation, Fixed, FrictionLaw, GroupKey, Hinge, Hinge2, IslandSolve,
-    JointError, JointFeedback, JointKey, JointType, LMotor, LimitMotor, LimitState, LimitedAxis, Mass, Null,
-    PR, PU, Param, Piston, Plane2D, QuickSettings, Slider, Softness, Spring, StepClock, StepReport,
-    StepTimes, Stepper, SubstepSettings, Surface, SurfaceMode, Transmission, TransmissionMode, Universal,
+    DirectMethod, DirectSettings, FiniteRotation, Fixed, FrictionLaw, GroupKey, Hinge, Hinge2, ImpactLaw,
+    IslandSolve, JointError, JointFeedback, JointKey, JointType, LMotor, LimitMotor, LimitState, LimitedAxis,
+    Mass, Null, PR, PU, Param, Piston, Plane2D, QuickSettings, Slider, Softness, Spring, StepClock,
+    StepReport, StepTimes, Stepper, SubstepSettings, Surface, SurfaceMode, Transmission, TransmissionMode,
+    Universal,
 };
 pub use ferrode_math::{Aabb, ContactPoint, Mat3, Pose, Quat, Vec3};
 pub use fixed_step::FixedStep;

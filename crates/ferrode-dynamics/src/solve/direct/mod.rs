@@ -32,11 +32,27 @@ pub enum FrictionLaw {
     Cone,
 }
 
+/// In which order contacts with restitution bounce.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ImpactLaw {
+    /// All at once, as in ODE: each contact that approaches departs with its restitution, by the forces of one solution. A ball that hits four
+    /// touching ones comes back with 3/5 of its speed and gives them 2/5.
+    #[default]
+    Together,
+    /// Pair of bodies after pair, the fastest approach first, each as if alone, until none approaches: in Newton's cradle the last
+    /// ball leaves. Joints and friction take no part in the impulses; they act in the same step, on the velocities after them. (B. Smith,
+    /// D. M. Kaufman, E. Vouga, R. Tamstorf, E. Grinspun, "Reflections on simultaneous impact", SIGGRAPH 2012, section 3.)
+    InTurn,
+}
+
 /// How `Direct` solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirectSettings {
     /// What bounds friction.
     pub friction: FrictionLaw,
+    /// In which order contacts with restitution bounce.
+    pub impacts: ImpactLaw,
     /// Islands with fewer rows are solved by Dantzig's method on the dense matrix, as in ODE; 30 by default. Jointed figures of up to 160
     /// rows are too, for which it takes less time, unless this is 0. `usize::MAX` solves all islands so.
     pub dense_rows: usize,
@@ -59,6 +75,7 @@ impl Default for DirectSettings {
     fn default() -> Self {
         Self {
             friction: FrictionLaw::Pyramid,
+            impacts: ImpactLaw::Together,
             dense_rows: 30,
             max_factorisations: 200,
             most_dense_rows: 1500,
