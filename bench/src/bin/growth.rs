@@ -150,6 +150,16 @@ const CASES: &[Case] = &[
         build: heap,
     },
     Case {
+        name: "crowd",
+        sizes: CONTACT_SIZES,
+        most_for_libode: 80,
+        h: 0.01,
+        cfm: 1e-5,
+        sides: Some(HALF),
+        steps: [60, 10],
+        build: crowd,
+    },
+    Case {
         name: "grid",
         sizes: &[25, 100, 400, 900],
         most_for_libode: 100,
@@ -246,6 +256,20 @@ fn heap(world: &mut dyn Builder, n: usize) {
             Vec3::new(0.7 * x as f64 + 0.1 * unit(), 0.7 * y as f64 + 0.1 * unit(), 0.5 + 0.7 * z as f64);
         let axis = Vec3::new(unit(), unit(), unit());
         world.turned_body(0.125, HALF, at, Quat::from_axis_angle(axis, 3.0 * unit()));
+    }
+}
+
+/// Boxes dropped close to each other, each turned a little: nearly all end in one island.
+fn crowd(world: &mut dyn Builder, n: usize) {
+    let side = (1..).find(|s| s * s * s >= n).unwrap_or(1);
+    let mut random = OdeRandom::new(11);
+    let mut unit = || random.next_real() - 0.5;
+    for i in 0..n {
+        let (x, y, z) = (i % side, i / side % side, i / (side * side));
+        let half = 0.25 * (z % 2) as f64;
+        let at = Vec3::new(0.56 * x as f64 + half, 0.56 * y as f64 + half, 0.3 + 0.56 * z as f64);
+        let axis = Vec3::new(unit(), unit(), unit());
+        world.turned_body(0.125, HALF, at, Quat::from_axis_angle(axis, 0.2 * unit()));
     }
 }
 
