@@ -240,7 +240,8 @@ impl Workspace {
             };
             self.rhs.push(wanted - departure);
         }
-        if (0..n).any(|i| !(self.matrix[i * stride + i] > 0.0)) {
+        // Neither body can move.
+        if !(0..n).all(|i| self.matrix[i * stride + i] > 0.0) {
             return false;
         }
         for (list, value) in [(&mut self.lo, 0.0), (&mut self.hi, f64::INFINITY), (&mut self.impulse, 0.0)] {
