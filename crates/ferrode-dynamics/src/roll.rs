@@ -5,6 +5,8 @@
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Roll {
     bits: Vec<u64>,
+    /// Number of bits that are set.
+    count: usize,
     /// Number of times that bits were cleared. Who keeps account of bodies by the roll compares it with the last that he saw.
     pub cleared: u64,
 }
@@ -17,7 +19,9 @@ impl Roll {
         if word >= self.bits.len() {
             self.bits.resize(word + 1, 0);
         }
-        self.bits[word] |= 1 << (slot & 63);
+        let bit = 1 << (slot & 63);
+        self.count += usize::from(self.bits[word] & bit == 0);
+        self.bits[word] |= bit;
     }
 
     /// The slots, the last first: the order of the bodies' list, where none was destroyed.
@@ -34,12 +38,15 @@ impl Roll {
 
     /// Number of bits that are set.
     pub fn count(&self) -> usize {
-        self.bits.iter().map(|word| word.count_ones() as usize).sum()
+        self.count
     }
 
     /// Keeps the slots for which `stays` says so.
     pub fn retain(&mut self, mut stays: impl FnMut(u32) -> bool) {
         self.cleared += 1;
+        if self.count == 0 {
+            return;
+        }
         for (w, bits) in self.bits.iter_mut().enumerate() {
             let mut word = *bits;
             while word != 0 {
@@ -47,6 +54,7 @@ impl Roll {
                 word &= word - 1;
                 if !stays(64 * w as u32 + bit) {
                     *bits ^= 1 << bit;
+                    self.count -= 1;
                 }
             }
         }

@@ -162,7 +162,7 @@ impl World {
         report: &mut StepReport,
     ) -> Result<(), Error> {
         if stepper == Stepper::Substep {
-            *report = self.step_substep(h, &mut [], &[], Some(moved))?;
+            *report = self.step_substep(h, (&mut [], None), &[], Some(moved))?;
             return Ok(());
         }
         crate::softness::step_size(h)?;

@@ -59,7 +59,8 @@ impl World {
             self.remove_geom(key)?;
             return Err(ColliderError::NotPlaceable(key).into());
         }
-        self.geoms_of_body.entry(body).or_default().insert(0, key);
+        // Mostly there is one.
+        self.geoms_of_body.entry(body).or_insert_with(|| Vec::with_capacity(1)).insert(0, key);
         Ok(key)
     }
 

@@ -67,6 +67,72 @@ fn a_stack_stands_and_sleeps() {
     assert!(woken);
 }
 
+#[test]
+fn a_sleeping_world_wakes_by_whatever_is_done_to_it() {
+    let asleep = || {
+        let (mut world, boxes) = stack(Vec3::ZERO);
+        steps(&mut world, 240);
+        // Some of these steps are those in which nothing is awake any more.
+        let (time, pairs) = (world.time(), world.step(H).unwrap().pairs);
+        assert!(pairs >= 10 && (world.time() - time - H).abs() < 1e-12);
+        assert!(boxes.iter().all(|key| !world.body(*key).unwrap().is_enabled()));
+        assert!(world.contact_events().is_empty());
+        (world, boxes)
+    };
+    let touch = |world: &World| {
+        let pushed = world.contacts().iter().map(|c| c.force.length()).sum::<f64>();
+        assert!(pushed > 1000.0 * G * 10.0, "{pushed}");
+    };
+    // By hand: all wake, with the impulses that they fell asleep with, so that nothing sinks.
+    let (mut world, boxes) = asleep();
+    let top = world.body(boxes[9]).unwrap().position();
+    world.body_mut(boxes[0]).unwrap().enable();
+    steps(&mut world, 1);
+    assert!(boxes.iter().all(|key| world.body(*key).unwrap().is_enabled()));
+    touch(&world);
+    steps(&mut world, 5);
+    assert!((world.body(boxes[9]).unwrap().position() - top).length() < 1e-3);
+    // By a shape that is moved into it, and one that comes by itself.
+    let (mut world, boxes) = asleep();
+    let (mut other, ball) = {
+        let shape = Sphere::new(0.5).unwrap();
+        let ball = world.add_static(shape, Pose::from_position(Vec3::new(5.0, 0.0, 9.5))).unwrap();
+        (world, ball)
+    };
+    steps(&mut other, 2);
+    assert!(!other.body(boxes[9]).unwrap().is_enabled());
+    other.remove_geom(ball).unwrap();
+    let shape = Sphere::new(0.5).unwrap();
+    let body = other.add_body(BodyBuilder::new().at(Vec3::Z * 12.0).with_shape(shape, 100.0)).unwrap();
+    steps(&mut other, 60);
+    assert!(boxes.iter().all(|key| other.body(*key).unwrap().is_enabled()));
+    assert!(other.body(body).unwrap().position().z > 10.0);
+}
+
+#[test]
+fn manifolds_that_are_not_awake_are_not_looked_at() {
+    use ferrode::dynamics::{ContactManifold, ManifoldPoint};
+    let mut world = ferrode::dynamics::World::new();
+    world.set_gravity(Vec3::new(0.0, 0.0, -G)).unwrap();
+    let bodies = [world.create_body(), world.create_body()];
+    let surfaces = [ferrode::Surface::with_friction(0.5)];
+    let mut manifolds = bodies.map(|body| {
+        let mut manifold = ContactManifold::new(Some(body), None, 0);
+        manifold.set_normal(Vec3::Z);
+        manifold.push(ManifoldPoint { arm1: [0.0, 0.0, -0.5], ..ManifoldPoint::default() });
+        manifold
+    });
+    // One that counts for nothing may name any surface.
+    manifolds[1].set_surface(7);
+    assert!(world.step_with_manifolds(H, &mut manifolds, &surfaces).is_err());
+    // Bits beyond the last manifold count for nothing either.
+    world.step_with_awake_manifolds(H, &mut manifolds, &[!0b10], &surfaces).unwrap();
+    let speed = bodies.map(|body| world.body(body).unwrap().linear_velocity().z);
+    assert!(speed[0].abs() < 1e-3, "{speed:?}");
+    assert!((speed[1] + G * H).abs() < 1e-12, "{speed:?}");
+    assert!(manifolds[0].normal_impulse() > 0.0 && manifolds[1].normal_impulse() == 0.0);
+}
+
 /// Boxes poured into a bin, a little askew: faces lie on faces in all ways, and rocking on a single point would show.
 #[test]
 fn boxes_poured_into_a_bin_come_to_rest() {

@@ -37,6 +37,8 @@ pub(super) struct Slab {
     pub list: Vec<Contact>,
     /// A bit for each that is in use and awake.
     pub awake: Vec<u64>,
+    /// A bit for each that is in use.
+    pub used: Vec<u64>,
     free: Vec<u32>,
 }
 
@@ -106,8 +108,10 @@ impl Slab {
         };
         if self.list.len() > 64 * self.awake.len() {
             self.awake.push(0);
+            self.used.push(0);
         }
         set(&mut self.awake, place, true);
+        set(&mut self.used, place, true);
         place
     }
 
@@ -117,6 +121,7 @@ impl Slab {
             let next = self.list[c as usize].next;
             self.list[c as usize].pair = NONE;
             set(&mut self.awake, c, false);
+            set(&mut self.used, c, false);
             self.free.push(c);
             c = next;
         }
@@ -131,6 +136,8 @@ impl Slab {
     }
 
     pub fn memory(&self) -> usize {
-        self.list.capacity() * size_of::<Contact>() + self.awake.capacity() * 8 + self.free.capacity() * 4
+        self.list.capacity() * size_of::<Contact>()
+            + (self.awake.capacity() + self.used.capacity()) * 8
+            + self.free.capacity() * 4
     }
 }

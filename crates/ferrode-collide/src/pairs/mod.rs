@@ -256,6 +256,11 @@ impl PairCache {
         (&self.contacts.list, &self.contacts.awake)
     }
 
+    /// A bit for each place that is in use, those asleep included.
+    pub fn used_places(&self) -> &[u64] {
+        &self.contacts.used
+    }
+
     /// The contact at a place.
     pub fn contact(&self, place: u32) -> Option<&Contact> {
         self.contacts.get(place)
@@ -270,6 +275,12 @@ impl PairCache {
     /// Number of near pairs.
     pub fn pair_count(&self) -> usize {
         self.pairs.len() - self.free_pairs.len()
+    }
+
+    /// Whether nothing was told since the last update, and no pair is awake: another update would find nothing.
+    pub fn is_idle(&self) -> bool {
+        let told = !(self.news.moved.is_empty() && self.news.woken.is_empty() && self.changed.is_empty());
+        !told && self.work.parted.is_empty() && self.awake.iter().all(|word| *word == 0)
     }
 
     /// Number of contacts, those asleep included.

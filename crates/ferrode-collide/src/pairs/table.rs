@@ -5,7 +5,7 @@ use super::{NONE, Pair};
 /// Places of pairs, by a hash of their geoms. Only asked for, never walked: its order decides nothing.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PairTable {
-    /// A power of two, at least twice as many as there are pairs.
+    /// A power of two; at most three quarters are taken.
     places: Vec<u32>,
     count: usize,
 }
@@ -37,7 +37,7 @@ impl PairTable {
 
     /// Adds the place of a pair that is not in the table.
     pub fn insert(&mut self, pairs: &[Pair], place: u32) {
-        if 2 * (self.count + 1) > self.places.len() {
+        if 4 * (self.count + 1) > 3 * self.places.len() {
             let size = (2 * self.places.len()).max(64);
             let old = core::mem::replace(&mut self.places, vec![NONE; size]);
             old.into_iter().filter(|&p| p != NONE).for_each(|p| self.put(pairs, p));

@@ -17,7 +17,7 @@ const PAIRS: usize = 1024;
 /// Contacts of one task, a multiple of 64.
 const CONTACTS: usize = 256;
 /// Room for new contacts that a task keeps.
-const MOST_KEPT: usize = 128;
+const MOST_KEPT: usize = 8;
 /// Cosine of the angle by which the normal of a concave pair's manifold may turn in one step.
 const SAME_NORMAL: f32 = 0.9;
 

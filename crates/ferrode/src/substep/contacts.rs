@@ -13,8 +13,20 @@ use ferrode_math::stage::{Crew, chunks};
 
 /// The tag of a contact whose manifold has been set up; new ones have 0.
 const SET_UP: u32 = 1;
-/// Contacts of one task.
+/// Contacts of one task, a multiple of 64.
 const PLACES: usize = 256;
+
+/// Calls `visit` with the number of each of the first `count` bits that is set.
+#[inline(always)]
+fn for_awake(words: &[u64], count: usize, mut visit: impl FnMut(usize)) {
+    for (w, word) in words.iter().take(count.div_ceil(64)).enumerate() {
+        let mut bits = *word;
+        while bits != 0 {
+            visit(64 * w + bits.trailing_zeros() as usize);
+            bits &= bits - 1;
+        }
+    }
+}
 
 impl World {
     /// Broad and narrow phase.
@@ -43,6 +55,10 @@ impl World {
             surfaces.clear();
         }
         let (contacts, awake) = pairs.places();
+        if contacts.len() > manifolds.capacity() {
+            // Each time, old and new are held side by side: not too often. What is not used yet is not there yet.
+            manifolds.reserve_exact(contacts.len() + contacts.len() / 2 - manifolds.len());
+        }
         manifolds.resize(contacts.len(), ContactManifold::new(None, None, 0));
         filled.resize_with(contacts.len().div_ceil(PLACES), Filled::default);
         let ahead = h + h / f64::from(self.dynamics.substep().substeps);
@@ -50,18 +66,20 @@ impl World {
         crew.each((chunks(manifolds, PLACES), chunks(filled, 1)), |task, (manifolds, filled)| {
             let filled = &mut filled[0];
             filled.start();
-            for (place, manifold) in (task * PLACES..).zip(manifolds) {
-                let contact = &contacts[place];
-                if contact.is_vacant() {
-                    if !manifold.is_empty() {
-                        manifold.clear();
-                    }
-                } else if anew || contact.tag != SET_UP {
-                    filled.new.push(place as u32);
-                } else if awake[place >> 6] >> (place & 63) & 1 != 0 {
-                    filling.fill(contact, manifold, filled);
-                }
+            let first = task * PLACES;
+            if anew {
+                let used = (0..manifolds.len()).filter(|i| !contacts[first + i].is_vacant());
+                filled.new.extend(used.map(|i| (first + i) as u32));
+                return;
             }
+            for_awake(&awake[first / 64..], manifolds.len(), |i| {
+                let contact = &contacts[first + i];
+                if contact.tag == SET_UP {
+                    filling.fill(contact, &mut manifolds[i], filled);
+                } else {
+                    filled.new.push((first + i) as u32);
+                }
+            });
         });
         for filled in filled.iter_mut() {
             for place in core::mem::take(&mut filled.new) {
@@ -275,16 +293,15 @@ impl Pipeline {
         let Self { pairs, manifolds, .. } = self;
         let (contacts, awake) = pairs.contact_places();
         crew.each(chunks(contacts, PLACES), |task, contacts| {
-            for (place, contact) in (task * PLACES..).zip(contacts) {
-                if awake[place >> 6] >> (place & 63) & 1 == 0 {
-                    continue;
-                }
+            let first = task * PLACES;
+            for_awake(&awake[first / 64..], contacts.len(), |i| {
+                let contact = &mut contacts[i];
                 contact.tag = SET_UP;
                 let points = contact.manifold.points_mut().iter_mut();
-                for (point, solved) in points.zip(manifolds[place].points()) {
+                for (point, solved) in points.zip(manifolds[first + i].points()) {
                     point.impulse[0] = solved.impulse;
                 }
-            }
+            });
         });
     }
 }

@@ -4,6 +4,7 @@ use super::Workspace;
 use super::bodies::SolverBodies;
 use super::contact::{self, ManifoldKey, NOT_SOLVED};
 use super::manifold::{ContactManifold, STATIC, check_surface};
+use super::room::make_room;
 use super::surface::SurfaceCoefficients;
 use crate::arena::{Arena, NIL};
 use crate::body::Body;
@@ -40,21 +41,49 @@ enum Sleeper {
     Gone,
 }
 
-/// The error of the first manifold that names a surface that there is none of.
+/// Lists the places of the manifolds that count: all, or those whose bits are set.
+pub(super) fn list_active(count: usize, awake: Option<&[u64]>, work: &mut Workspace) {
+    let active = &mut work.active;
+    active.clear();
+    match awake {
+        None => {
+            make_room(active, count);
+            active.extend(0..count as u32);
+        }
+        Some(words) => {
+            make_room(active, words.iter().map(|word| word.count_ones() as usize).sum());
+            for (w, word) in words.iter().enumerate() {
+                let mut bits = *word;
+                while bits != 0 {
+                    active.push(64 * w as u32 + bits.trailing_zeros());
+                    bits &= bits - 1;
+                }
+            }
+            while active.last().is_some_and(|place| *place as usize >= count) {
+                active.pop();
+            }
+        }
+    }
+    work.own_active = active.len();
+}
+
+/// The error of the first manifold that counts and names a surface that there is none of.
 pub(super) fn check_surfaces(
     crew: &Crew,
     manifolds: &[ContactManifold],
+    active: &[u32],
     surfaces: &[Surface],
 ) -> Result<(), Error> {
+    let check = |place: &u32| check_surface(&manifolds[*place as usize], surfaces);
     let wrong = AtomicBool::new(false);
-    crew.run(manifolds.len().div_ceil(SHARE), |task| {
-        let mut share = manifolds[task * SHARE..].iter().take(SHARE);
-        if share.any(|manifold| check_surface(manifold, surfaces).is_err()) {
+    crew.run(active.len().div_ceil(SHARE), |task| {
+        let mut share = active[task * SHARE..].iter().take(SHARE);
+        if share.any(|place| check(place).is_err()) {
             wrong.store(true, Ordering::Relaxed);
         }
     });
     if wrong.into_inner() {
-        return manifolds.iter().try_for_each(|manifold| check_surface(manifold, surfaces));
+        return active.iter().try_for_each(check);
     }
     Ok(())
 }
@@ -62,17 +91,18 @@ pub(super) fn check_surfaces(
 impl World {
     /// Finds the bodies and the colour of each manifold, and sorts them.
     pub(super) fn colour_manifolds(&mut self, manifolds: &[ContactManifold], work: &mut Workspace) {
-        let Workspace { bodies, contacts, places, surfaces, keyed, colouring, .. } = work;
+        let Workspace { bodies, contacts, places, surfaces, keyed, colouring, active, .. } = work;
         let keys = &mut contacts.keys;
-        keys.resize(manifolds.len(), ManifoldKey::LEFT_OUT);
-        keyed.resize_with(manifolds.len().div_ceil(SHARE), Keyed::default);
+        make_room(keys, active.len());
+        keys.resize(active.len(), ManifoldKey::LEFT_OUT);
+        keyed.resize_with(active.len().div_ceil(SHARE), Keyed::default);
         let keying = Keying { world: &self.bodies, bodies, places, surfaces };
         self.crew.each((chunks(keys, SHARE), chunks(keyed, 1)), |task, (keys, found)| {
             let found = &mut found[0];
             found.asleep.clear();
             found.has_bounce = false;
-            for (key, manifold) in keys.iter_mut().zip(&manifolds[task * SHARE..]) {
-                *key = keying.key(manifold, found);
+            for (key, place) in keys.iter_mut().zip(&active[task * SHARE..]) {
+                *key = keying.key(*place, &manifolds[*place as usize], found);
             }
         });
         colouring.begin(bodies.len());
@@ -94,7 +124,7 @@ impl World {
 
 impl Keying<'_> {
     /// The key of a manifold, its colour left open.
-    fn key(&self, manifold: &ContactManifold, found: &mut Keyed) -> ManifoldKey {
+    fn key(&self, place: u32, manifold: &ContactManifold, found: &mut Keyed) -> ManifoldKey {
         if manifold.count == 0 || manifold.is_ignored() {
             return ManifoldKey::LEFT_OUT;
         }
@@ -113,7 +143,7 @@ impl Keying<'_> {
                     let special = surface.special || kinematic;
                     found.has_bounce |= surface.bounce > 0.0;
                     let sort = contact::sort_key(0, special, manifold.len());
-                    return ManifoldKey { bodies: places, movable, sort };
+                    return ManifoldKey { bodies: places, place, movable, sort };
                 }
             }
         } else if let Some(side) = (0..2).find(|side| places[*side] != NIL)

@@ -21,6 +21,7 @@ mod far;
 mod joints;
 mod keys;
 mod manifold;
+mod room;
 mod settings;
 mod sleep;
 mod soft;
@@ -69,6 +70,9 @@ pub(crate) struct Workspace {
     loose: Vec<ContactManifold>,
     loose_joints: Vec<u32>,
     all: Vec<ContactManifold>,
+    /// Places of the manifolds that count: those of the caller, `own_active` of them, and the loose ones.
+    active: Vec<u32>,
+    own_active: usize,
     waking: Vec<u64>,
     sets: sleep::Sets,
     restless: Vec<bool>,
@@ -121,21 +125,54 @@ impl World {
         manifolds: &mut [ContactManifold],
         surfaces: &[Surface],
     ) -> Result<StepReport, Error> {
-        self.step_substep(h, manifolds, surfaces, None)
+        self.step_substep(h, (manifolds, None), surfaces, None)
+    }
+
+    /// As [`World::step_with_manifolds`], of many manifolds of which few matter: those whose bit is set in `awake`, the first in the lowest
+    /// bit of the first word. The others are not looked at, and cost nothing.
+    ///
+    /// # Errors
+    /// As there; surfaces count of manifolds that matter.
+    pub fn step_with_awake_manifolds(
+        &mut self,
+        h: f64,
+        manifolds: &mut [ContactManifold],
+        awake: &[u64],
+        surfaces: &[Surface],
+    ) -> Result<StepReport, Error> {
+        self.step_substep(h, (manifolds, Some(awake)), surfaces, None)
+    }
+
+    /// A step of [`Stepper::Substep`](crate::Stepper::Substep) in a world in which nothing is awake; does nothing and returns `false`
+    /// where something may be.
+    #[doc(hidden)]
+    pub fn step_asleep(&mut self, h: f64) -> bool {
+        let work = &mut self.scratch.substep;
+        if self.roll.count() > 0 || work.bodies.len() > 0 {
+            return false;
+        }
+        self.timing.begin();
+        work.last_h = h;
+        true
     }
 
     pub(crate) fn step_substep(
         &mut self,
         h: f64,
-        manifolds: &mut [ContactManifold],
+        (manifolds, awake): (&mut [ContactManifold], Option<&[u64]>),
         surfaces: &[Surface],
         moved: Option<MovedObserver<'_>>,
     ) -> Result<StepReport, Error> {
         crate::softness::step_size(h)?;
-        keys::check_surfaces(&self.crew, manifolds, surfaces)?;
+        let mut work = core::mem::take(&mut self.scratch.substep);
+        keys::list_active(manifolds.len(), awake, &mut work);
+        let checked = keys::check_surfaces(&self.crew, manifolds, &work.active, surfaces);
+        if let Err(error) = checked {
+            self.scratch.substep = work;
+            return Err(error);
+        }
         self.timing.begin();
         let mut report = StepReport::default();
-        let mut work = core::mem::take(&mut self.scratch.substep);
         self.convert_surfaces(h, surfaces, &mut work);
         let watched = self.gather_awake(h, manifolds, &mut work, &mut report);
         if work.bodies.len() > 0 {
@@ -237,6 +274,7 @@ impl World {
         work.joints.clear();
         work.loose.clear();
         work.loose_joints.clear();
+        work.active.truncate(work.own_active);
         if self.joints.len() == 0 {
             return;
         }
@@ -295,6 +333,7 @@ impl World {
             work.all.clear();
             work.all.extend_from_slice(manifolds);
             work.all.extend_from_slice(&work.loose);
+            work.active.extend(manifolds.len() as u32..work.all.len() as u32);
         }
     }
 

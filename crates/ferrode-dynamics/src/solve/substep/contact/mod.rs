@@ -18,6 +18,7 @@ mod vector;
 use super::bodies::SolverBodies;
 use super::colour::{COLOURS, OVERFLOW};
 use super::manifold::{ContactManifold, MANIFOLD_POINTS};
+use super::room::make_room;
 use super::soft::Coefficients;
 use super::surface::SurfaceCoefficients;
 use core::any::Any;
@@ -136,11 +137,11 @@ impl<L: Lanes> Default for Batches<L> {
 /// The contacts of a step.
 #[derive(Debug, Default)]
 pub(super) struct Contacts {
-    /// Manifolds by colour and kind.
+    /// Keys by colour and kind.
     pub order: Vec<u32>,
     /// Where each colour begins in `order`; the overflow and the end come last.
     starts: [u32; COLOURS + 2],
-    /// Dense places of the bodies of each manifold, and its sorting key.
+    /// Of each manifold that counts.
     pub keys: Vec<ManifoldKey>,
     /// Batches in the lanes of this machine: `Batches<L>`.
     wide: Option<Box<dyn Any + Send + Sync>>,
@@ -155,6 +156,8 @@ pub(super) struct Contacts {
 pub(super) struct ManifoldKey {
     /// Dense places, or `u32::MAX`.
     pub bodies: [u32; 2],
+    /// Of the manifold.
+    pub place: u32,
     /// Whether forces move them.
     pub movable: [bool; 2],
     /// Colour, kind and number of points, in the order of solving; `NOT_SOLVED` for one without points or movable bodies.
@@ -163,7 +166,8 @@ pub(super) struct ManifoldKey {
 
 impl ManifoldKey {
     /// The key of a manifold that is not solved.
-    pub const LEFT_OUT: Self = Self { bodies: [u32::MAX; 2], movable: [false; 2], sort: NOT_SOLVED };
+    pub const LEFT_OUT: Self =
+        Self { bodies: [u32::MAX; 2], place: u32::MAX, movable: [false; 2], sort: NOT_SOLVED };
 }
 
 /// What sorts a manifold out.
@@ -225,6 +229,7 @@ impl Contacts {
             *start = self.counts[colour * KINDS];
         }
         self.order.clear();
+        make_room(&mut self.order, self.counts[kinds] as usize);
         self.order.resize(self.counts[kinds] as usize, 0);
         for (i, key) in self.keys.iter().enumerate() {
             if key.sort != NOT_SOLVED {
@@ -268,10 +273,16 @@ impl Contacts {
     /// Writes the impulses back into the manifolds.
     pub fn store(&self, level: Level, manifolds: &mut [ContactManifold]) {
         if let Some(batches) = &self.wide {
-            dispatch_at(level, store::Store { batches: &**batches, order: &self.order, manifolds });
+            dispatch_at(
+                level,
+                store::Store { batches: &**batches, order: &self.order, keys: &self.keys, manifolds },
+            );
         }
         if let Some(batches) = &self.narrow {
-            dispatch_at(Level::Scalar, store::Store { batches: &**batches, order: &self.order, manifolds });
+            dispatch_at(
+                Level::Scalar,
+                store::Store { batches: &**batches, order: &self.order, keys: &self.keys, manifolds },
+            );
         }
     }
 }
@@ -314,8 +325,10 @@ impl Kernel for Prepare<'_> {
             colours[colour] = first_batch..spans.len();
         }
         if spans.len() > list.capacity() {
-            // Doubling would leave up to half of the largest array unused.
-            list.reserve_exact((spans.len() + spans.len() / 8).max(32) - list.len());
+            // What they hold is of the step before: no need to have the old ones beside the new. Doubling would leave up to half of the
+            // largest array unused.
+            *list = Vec::new();
+            list.reserve_exact((spans.len() + spans.len() / 8).max(32));
         }
         list.resize_with(spans.len(), Batch::blank);
         let rows = bodies.begin(colours.iter().cloned(), spans.len());

@@ -57,7 +57,8 @@ fn prepare<L: Lanes>(
 ) {
     let special = span.special;
     let manifolds = &order[span.first as usize..span.end as usize];
-    let manifold = |lane: usize| manifolds.get(lane).map(|i| &context.manifolds[*i as usize]);
+    let at = |i: &u32| &context.manifolds[keys[*i as usize].place as usize];
+    let manifold = |lane: usize| manifolds.get(lane).map(at);
     let surface = |lane: usize| manifold(lane).map_or(&NO_SURFACE, |m| &context.surfaces[m.surface as usize]);
     for (side, index) in bodies.iter_mut().enumerate() {
         for (lane, i) in index.as_mut().iter_mut().enumerate() {
@@ -91,7 +92,7 @@ fn prepare<L: Lanes>(
     let inv_mass = inv_mass1 + inv_mass2;
 
     // Rows along the normal.
-    let most = manifolds.iter().map(|i| context.manifolds[*i as usize].count).max().unwrap_or(0);
+    let most = manifolds.iter().map(|i| at(i).count).max().unwrap_or(0);
     let mut arms = [[Vector3::ZERO; 2]; MANIFOLD_POINTS];
     let mut present = [L::ZERO; MANIFOLD_POINTS];
     let mut centre = [Vector3::ZERO; 2];

@@ -1,7 +1,7 @@
 //! From rows back to manifolds.
 
 use super::vector::{load3, store3};
-use super::{Batches, Block3};
+use super::{Batches, Block3, ManifoldKey};
 use crate::solve::substep::manifold::ContactManifold;
 use core::any::Any;
 use ferrode_math::Vector3;
@@ -17,6 +17,7 @@ fn along<L: Lanes>(tangents: [Vector3<L>; 2], impulses: [L::Block; 2]) -> Block3
 pub(super) struct Store<'a> {
     pub batches: &'a (dyn Any + Send + Sync),
     pub order: &'a [u32],
+    pub keys: &'a [ManifoldKey],
     pub manifolds: &'a mut [ContactManifold],
 }
 
@@ -37,8 +38,8 @@ impl Kernel for Store<'_> {
                 rolling = Some(along::<L>([t1, t2], extra.rolling_impulse));
             }
             let places = &self.order[span.first as usize..span.end as usize];
-            for (lane, place) in places.iter().enumerate() {
-                let manifold = &mut self.manifolds[*place as usize];
+            for (lane, key) in places.iter().enumerate() {
+                let manifold = &mut self.manifolds[self.keys[*key as usize].place as usize];
                 for (record, row) in manifold.points.iter_mut().zip(&batch.points[..batch.count as usize]) {
                     record.0[7] = row.impulse.as_ref()[lane];
                 }
