@@ -110,6 +110,18 @@ fn a_sleeping_world_wakes_by_whatever_is_done_to_it() {
 }
 
 #[test]
+fn a_sleeping_world_refuses_impossible_steps() {
+    let (mut world, boxes) = stack(Vec3::ZERO);
+    steps(&mut world, 240);
+    assert!(boxes.iter().all(|key| !world.body(*key).unwrap().is_enabled()));
+    let time = world.time();
+    for h in [0.0, -0.01, f64::NAN, f64::INFINITY] {
+        assert!(world.step(h).is_err(), "{h}");
+        assert_eq!(world.time(), time);
+    }
+}
+
+#[test]
 fn manifolds_that_are_not_awake_are_not_looked_at() {
     use ferrode::dynamics::{ContactManifold, ManifoldPoint};
     let mut world = ferrode::dynamics::World::new();

@@ -147,8 +147,10 @@ impl World {
     /// where something may be.
     #[doc(hidden)]
     pub fn step_asleep(&mut self, h: f64) -> bool {
+        // Who asks for an impossible step has to hear of it.
+        let possible = crate::softness::step_size(h).is_ok();
         let work = &mut self.scratch.substep;
-        if self.roll.count() > 0 || work.bodies.len() > 0 {
+        if !possible || self.roll.count() > 0 || work.bodies.len() > 0 {
             return false;
         }
         self.timing.begin();
