@@ -476,9 +476,8 @@ impl SolverBody {
 impl Body {
     /// The velocity after a step of `Direct`.
     fn advance_velocity(&mut self, from: &SolverBody, h: f64) {
-        let mut advanced = *from;
-        direct::update_velocity(&mut advanced, h);
-        self.set_velocities(&advanced);
+        let [linear, angular] = direct::velocity_after(from, h);
+        (self.frame.linear_velocity, self.frame.angular_velocity) = (linear, angular);
     }
 
     fn set_velocities(&mut self, from: &SolverBody) {

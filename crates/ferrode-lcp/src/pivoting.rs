@@ -279,13 +279,15 @@ impl Solve<'_, '_> {
     fn bounds_without_friction(&mut self) {
         let m = self.p.jacobian.len();
         let Self { p, work, .. } = self;
-        work.lo.clear();
-        work.hi.clear();
-        for row in 0..m {
+        work.lo.resize(m, 0.0);
+        work.hi.resize(m, 0.0);
+        let given = p.lo.iter().zip(p.hi).zip(p.findex).zip(&work.system.used_sigma);
+        for ((lo, hi), (((given_lo, given_hi), findex), sigma)) in
+            work.lo.iter_mut().zip(&mut work.hi).zip(given)
+        {
             // An empty row without CFM takes no force.
-            let none = p.findex[row] >= 0 || work.system.used_sigma[row] <= 0.0;
-            work.lo.push(if none { 0.0 } else { p.lo[row] });
-            work.hi.push(if none { 0.0 } else { p.hi[row] });
+            let none = *findex >= 0 || *sigma <= 0.0;
+            (*lo, *hi) = if none { (0.0, 0.0) } else { (*given_lo, *given_hi) };
         }
     }
 
@@ -316,23 +318,27 @@ impl Solve<'_, '_> {
         if !self.report.certified() || !solved {
             self.fall_back();
         }
-        for row in 0..m {
-            self.p.states[row][which] = Some(self.work.state[row]);
+        for (states, state) in self.p.states[..m].iter_mut().zip(&self.work.state) {
+            states[which] = Some(*state);
         }
     }
 
     fn guess(&mut self, which: usize) {
         let Self { p, work, .. } = self;
         let s = &work.system;
-        work.state.clear();
-        for row in 0..p.jacobian.len() {
-            let (lo, hi) = (work.lo[row], work.hi[row]);
-            let state = p.states[row][which].unwrap_or_else(|| {
+        work.state.resize(p.jacobian.len(), RowState::Free);
+        let rows = work.lo.iter().zip(&work.hi).zip(s.rhs.iter().zip(&s.diagonal)).zip(p.states.iter());
+        for (out, (((lo, hi), (rhs, diagonal)), guess)) in work.state.iter_mut().zip(rows) {
+            if *lo == f64::NEG_INFINITY && *hi == f64::INFINITY {
+                *out = RowState::Free;
+                continue;
+            }
+            let state = guess[which].unwrap_or_else(|| {
                 // A row that asks for nothing carries load, as those of a stack at rest do.
-                let alone = s.rhs[row] / s.diagonal[row];
-                if alone == 0.0 { RowState::Free } else { state_of(alone, lo, hi) }
+                let alone = rhs / diagonal;
+                if alone == 0.0 { RowState::Free } else { state_of(alone, *lo, *hi) }
             });
-            work.state.push(possible(state, lo, hi));
+            *out = possible(state, *lo, *hi);
         }
     }
 
@@ -406,7 +412,7 @@ impl Solve<'_, '_> {
                 best[r] += t * dy[r];
             }
         }
-        crate::sparse::system::multiply(self.p.blocks, self.p.jacobian, best_y, best_jy);
+        crate::sparse::rows::multiply_in_quads(self.p.blocks, self.p.jacobian, best_y, best_jy);
         if (t - 1.0).abs() < 1e-9 {
             // At the end of a whole step the forces are known better than `r - J y` tells them.
             core::mem::swap(state, proposed);
@@ -456,11 +462,12 @@ impl Solve<'_, '_> {
             factored.clone_from(state);
             report.factorisations += 1;
         }
-        for (row, state) in state.iter().enumerate() {
+        let bounds = lo.iter().zip(hi.iter());
+        for ((state, lambda), (lo, hi)) in state.iter().zip(&mut system.lambda).zip(bounds) {
             match state {
-                RowState::Free => {}
-                RowState::Lower => system.lambda[row] = lo[row],
-                RowState::Upper => system.lambda[row] = hi[row],
+                RowState::Free => *lambda = 0.0,
+                RowState::Lower => *lambda = *lo,
+                RowState::Upper => *lambda = *hi,
             }
         }
         self.largest = system.solve(p.blocks, p.jacobian, state, shape);
@@ -488,23 +495,21 @@ impl Solve<'_, '_> {
         proposed.clone_from(state);
         let sigma = if self.pass == Pass::Own { &s.sigma } else { &s.used_sigma };
         let slack = |row: usize| s.jy[row] + sigma[row] * s.lambda[row] - s.rhs[row];
+        let least = |row: usize| tolerance * s.diagonal[row] + NOISE * s.rhs[row].abs();
         let mut wrong = 0;
-        for row in 0..state.len() {
-            if lo[row] == hi[row] {
-                continue;
-            }
-            let least = tolerance * s.diagonal[row] + NOISE * s.rhs[row].abs();
-            let better = match state[row] {
-                RowState::Free if s.lambda[row] < lo[row] - tolerance => RowState::Lower,
-                RowState::Free if s.lambda[row] > hi[row] + tolerance => RowState::Upper,
-                RowState::Lower if slack(row) < -least => RowState::Free,
-                RowState::Upper if slack(row) > least => RowState::Free,
-                state => state,
+        let rows = s.lambda.iter().zip(lo.iter().zip(hi.iter()));
+        for (row, (state, (lambda, (lo, hi)))) in proposed.iter_mut().zip(rows).enumerate() {
+            let better = match *state {
+                RowState::Free if *lambda >= lo - tolerance && *lambda <= hi + tolerance => continue,
+                _ if lo == hi => continue,
+                RowState::Free if *lambda < lo - tolerance => RowState::Lower,
+                RowState::Free if *lambda > hi + tolerance => RowState::Upper,
+                RowState::Lower if slack(row) < -least(row) => RowState::Free,
+                RowState::Upper if slack(row) > least(row) => RowState::Free,
+                _ => continue,
             };
-            if better != state[row] {
-                proposed[row] = better;
-                wrong += 1;
-            }
+            *state = better;
+            wrong += 1;
         }
         wrong
     }
@@ -570,10 +575,11 @@ impl Solve<'_, '_> {
         let PivotingWorkspace { system, lo, hi, .. } = &mut **work;
         system.accelerations(p.blocks, p.jacobian);
         (report.residual, report.largest) = (0.0, 0.0);
-        for row in 0..system.lambda.len() {
-            let lambda = system.lambda[row];
-            let w = system.jy[row] + system.sigma[row] * lambda - p.rhs[row];
-            let residual = row_residual(lambda, w, system.diagonal[row], lo[row], hi[row]);
+        let rows = system.lambda.iter().zip(&system.jy).zip(system.sigma.iter().zip(p.rhs));
+        let rows = rows.zip(system.diagonal.iter().zip(lo.iter().zip(hi.iter())));
+        for (((lambda, jy), (sigma, rhs)), (diagonal, (lo, hi))) in rows {
+            let w = jy + sigma * lambda - rhs;
+            let residual = row_residual(*lambda, w, *diagonal, *lo, *hi);
             if residual > report.residual || residual.is_nan() {
                 report.residual = residual;
             }

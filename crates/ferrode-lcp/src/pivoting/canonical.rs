@@ -32,14 +32,16 @@ impl Solve<'_, '_> {
             let PivotingWorkspace { system, state, needed, lo, hi, .. } = &mut *self.work;
             let close = DEGENERATE * (1.0 + self.largest);
             let mut degenerate = false;
-            for row in 0..state.len() {
-                if state[row] != RowState::Free || needed[row] {
+            let rows = state.iter_mut().zip(needed.iter());
+            let bounds = system.lambda.iter().zip(lo.iter().zip(hi.iter()));
+            for ((state, needed), (lambda, (lo, hi))) in rows.zip(bounds) {
+                if *state != RowState::Free || *needed {
                     continue;
                 }
-                if system.lambda[row] - lo[row] < close {
-                    (state[row], degenerate) = (RowState::Lower, true);
-                } else if hi[row] - system.lambda[row] < close {
-                    (state[row], degenerate) = (RowState::Upper, true);
+                if lambda - lo < close {
+                    (*state, degenerate) = (RowState::Lower, true);
+                } else if hi - lambda < close {
+                    (*state, degenerate) = (RowState::Upper, true);
                 }
             }
             if !degenerate {

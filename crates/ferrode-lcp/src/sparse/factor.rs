@@ -10,15 +10,14 @@
 //! when some blocks of `K` change, the columns on the paths from these to the root are made anew, by the same operations in the same
 //! order as from scratch, to the same bits.
 
-use super::kernels::{
-    Block, backward, by_sizes, cholesky, forward, solve_right, sub_aat, sub_abt, sub_mul, sub_mul_transposed,
-};
-use super::symbolic::{NONE, Symbolic};
+use super::kernels::{Block, Column, by_sizes, cholesky, solve_right, stride, sub_aat, sub_abt, sub_mul};
+use super::symbolic::{Below, Head, NONE, Symbolic};
+use ferrode_math::simd::Quad;
 
 /// The factor.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Factor {
-    /// Column after column: the lower triangle of `L_cc`, the inverses of its diagonal, the blocks `L_rc` below.
+    /// Column after column: the lower triangle of `L_cc`, the rows of its inverse, the blocks `L_rc` below.
     pub values: Vec<f64>,
     /// Columns to be made.
     stale: Vec<bool>,
@@ -58,12 +57,18 @@ impl Factor {
 
     /// Sets the stale columns to those of the unit matrix with the signs of the columns, to which blocks are then added.
     pub fn clear_stale(&mut self, shape: &Symbolic) {
+        let all = self.stale.iter().all(|stale| *stale);
+        if all {
+            self.values.fill(0.0);
+        }
         for c in 0..shape.columns() {
             if self.stale[c] {
                 let (own, width) = (shape.start[c] as usize, usize::from(shape.size[c]));
-                self.values[own..shape.start[c + 1] as usize].fill(0.0);
+                if !all {
+                    self.values[own..shape.start[c + 1] as usize].fill(0.0);
+                }
                 for i in 0..width {
-                    self.values[own + (width + 1) * i] = shape.sign[c];
+                    self.values[own + (stride(width) + 1) * i] = shape.sign[c];
                 }
             }
         }
@@ -80,7 +85,8 @@ impl Factor {
     }
 
     /// Makes the stale columns.
-    pub fn factorise(&mut self, shape: &Symbolic) {
+    #[inline(always)]
+    pub fn factorise<Q: Quad>(&mut self, shape: &Symbolic) {
         self.replaced = 0;
         for c in 0..shape.columns() {
             if !core::mem::replace(&mut self.stale[c], false) {
@@ -102,60 +108,80 @@ impl Factor {
                 let k = shape.row_column[source] as usize;
                 let (depth, sign) = (shape.size[k], shape.sign[k]);
                 let factor = &earlier[shape.at[first] as usize..];
-                by_sizes!(sub_aat, [width, depth], (own, factor, sign));
+                by_sizes!(sub_aat, Q, [width, depth], (own, factor, sign));
                 for block in first + 1..shape.column_start[k + 1] as usize {
                     let row = shape.row[block] as usize;
                     let target = &mut own[self.position[row] as usize..];
                     let other = &earlier[shape.at[block] as usize..];
-                    by_sizes!(sub_abt, [shape.size[row], width, depth], (target, other, factor, sign));
+                    by_sizes!(sub_abt, Q, [shape.size[row], width, depth], (target, other, factor, sign));
                 }
             }
-            let (diagonal, rest) = own.split_at_mut(usize::from(width) * usize::from(width));
-            self.replaced += by_sizes!(cholesky, [width], (diagonal, rest, shape.sign[c]));
-            let (inverse, mut rest) = rest.split_at_mut(usize::from(width));
+            let square = usize::from(width) * stride(usize::from(width));
+            let (diagonal, rest) = own.split_at_mut(square);
+            self.replaced += by_sizes!(cholesky, Q, [width], (diagonal, rest, shape.sign[c]));
+            let (inverse, mut rest) = rest.split_at_mut(square);
             for row in &shape.row[range] {
                 let height = shape.size[*row as usize];
-                by_sizes!(solve_right, [height, width], (rest, diagonal, inverse));
-                rest = &mut rest[usize::from(height) * usize::from(width)..];
+                by_sizes!(solve_right, Q, [height, width], (rest, diagonal, inverse));
+                rest = &mut rest[stride(usize::from(height)) * usize::from(width)..];
             }
         }
         self.any_stale = false;
     }
 
     /// `x = K^-1 x`, `x` by columns.
-    pub fn solve(&self, shape: &Symbolic, x: &mut [f64]) {
-        let n = shape.columns();
-        for c in 0..n {
-            let (own, width) = (&self.values[shape.start[c] as usize..], shape.size[c]);
-            let (diagonal, rest) = own.split_at(usize::from(width) * usize::from(width));
-            let (inverse, mut rest) = rest.split_at(usize::from(width));
-            let (head, tail) = x.split_at_mut(shape.offset[c + 1] as usize);
-            let own = &mut head[shape.offset[c] as usize..];
-            by_sizes!(forward, [width], (own, diagonal, inverse));
-            for block in shape.column_start[c] as usize..shape.column_start[c + 1] as usize {
-                let row = shape.row[block] as usize;
-                let height = shape.size[row];
-                let target = &mut tail[(shape.offset[row] - shape.offset[c + 1]) as usize..];
-                by_sizes!(sub_mul, [height, width], (target, rest, own, shape.sign[c]));
-                rest = &rest[usize::from(height) * usize::from(width)..];
-            }
+    #[inline(always)]
+    pub fn solve<Q: Quad>(&self, shape: &Symbolic, x: &mut [f64]) {
+        for head in &shape.heads {
+            let below = &shape.below[head.below()];
+            let values = &self.values[head.start as usize..];
+            by_sizes!(go_forward, Q, [head.width], (head, below, values, x));
         }
-        for c in (0..n).rev() {
-            let (own, width) = (&self.values[shape.start[c] as usize..], shape.size[c]);
-            let (diagonal, rest) = own.split_at(usize::from(width) * usize::from(width));
-            let (inverse, mut rest) = rest.split_at(usize::from(width));
-            let (head, tail) = x.split_at_mut(shape.offset[c + 1] as usize);
-            let own = &mut head[shape.offset[c] as usize..];
-            for block in shape.column_start[c] as usize..shape.column_start[c + 1] as usize {
-                let row = shape.row[block] as usize;
-                let height = shape.size[row];
-                let source = &tail[(shape.offset[row] - shape.offset[c + 1]) as usize..];
-                by_sizes!(sub_mul_transposed, [height, width], (own, rest, source));
-                rest = &rest[usize::from(height) * usize::from(width)..];
-            }
-            by_sizes!(backward, [width], (own, diagonal, inverse, shape.sign[c]));
+        for head in shape.heads.iter().rev() {
+            let below = &shape.below[head.below()];
+            let values = &self.values[head.start as usize..];
+            by_sizes!(go_back, Q, [head.width], (head, below, values, x));
         }
     }
+}
+
+/// `x_c = L_cc^-1 x_c`, and takes it off the unknowns below.
+#[inline(always)]
+fn go_forward<Q: Quad, const N: usize>(head: &Head, below: &[Below], values: &[f64], x: &mut [f64]) {
+    let square = N * stride(N);
+    let (inverse, mut rest) = values[square..].split_at(square);
+    let own = &mut x[head.offset as usize..];
+    let solved = Column::<Q, N>::transposed_product::<N>(inverse, Column::load(own));
+    solved.store(own);
+    let mut own = [0.0; 6];
+    solved.store(&mut own);
+    for below in below {
+        let target = &mut x[below.offset as usize..];
+        by_sizes!(sub_mul, Q, [below.height, N], (target, rest, &own, head.sign));
+        rest = &rest[stride(usize::from(below.height)) * N..];
+    }
+}
+
+/// Takes the unknowns below off `x_c`, and `x_c = d_c L_cc^-T x_c`.
+#[inline(always)]
+fn go_back<Q: Quad, const N: usize>(head: &Head, below: &[Below], values: &[f64], x: &mut [f64]) {
+    let square = N * stride(N);
+    let (inverse, mut rest) = values[square..].split_at(square);
+    let mut sum = Column::<Q, N>::load(&x[head.offset as usize..]);
+    for below in below {
+        let source = &x[below.offset as usize..];
+        let product = if below.height == 3 {
+            Column::<Q, N>::transposed_product::<3>(rest, Column::load(source))
+        } else {
+            Column::<Q, N>::transposed_product::<6>(rest, Column::load(source))
+        };
+        sum = sum.sub(product);
+        rest = &rest[stride(usize::from(below.height)) * N..];
+    }
+    let mut own = [0.0; 6];
+    sum.store(&mut own);
+    let solved = Column::<Q, N>::product::<N>(inverse, &own).times(head.sign);
+    solved.store(&mut x[head.offset as usize..]);
 }
 
 #[inline(always)]

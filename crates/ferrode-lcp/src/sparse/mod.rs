@@ -34,7 +34,7 @@
 //! - `symbolic`: that shape, with where each pair of bodies stands in it, kept while the topology stands;
 //! - `factor`: the numbers, column by column from the left, so that after a change only the columns from the changed ones to the
 //!   root are done again;
-//! - `kernels`: blocks of 3 or 6 rows and columns.
+//! - `kernels`: blocks of 3 or 6 rows and columns; `rows`: products with rows.
 //!
 //! (T. Davis, "Direct Methods for Sparse Linear Systems", 2006; D. Baraff, "Linear-time dynamics using Lagrange multipliers",
 //! SIGGRAPH 1996; R. Vanderbei, "Symmetric quasi-definite matrices", SIAM J. Optim. 5, 1995; J. Liu, "The role of elimination trees in sparse factorization", 1990.)
@@ -42,6 +42,7 @@
 pub(crate) mod factor;
 pub(crate) mod kernels;
 pub mod ordering;
+pub(crate) mod rows;
 pub(crate) mod symbolic;
 pub(crate) mod system;
 

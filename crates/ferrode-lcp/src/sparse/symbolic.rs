@@ -4,7 +4,9 @@
 //! of the matrix is the unit matrix, so it is eliminated before all others in passing, which leaves products `J_i J_j^T` between
 //! its joints.
 
+use super::kernels::stride;
 use super::ordering::{Elimination, Node};
+use super::rows::MOST_OWN;
 use super::{NO_SPARSE_BODY, RowBlock};
 
 /// No block, no column, no parent.
@@ -12,7 +14,7 @@ pub(crate) const NONE: u32 = u32::MAX;
 /// The most joints of a light body.
 const MOST_JOINTS: usize = 3;
 /// The most rows of a joint that get unknowns of their own.
-const MOST_ROWS: u32 = 6;
+const MOST_ROWS: u32 = MOST_OWN as u32;
 
 /// Where a block of rows goes in the factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +36,35 @@ pub(crate) struct Coupling {
     pub at: u32,
 }
 
+/// A column, as who goes through them all wants it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Head {
+    /// Where its numbers start, and where its unknowns are in a vector.
+    pub start: u32,
+    pub offset: u32,
+    /// The blocks below the diagonal.
+    pub first_below: u32,
+    pub end_below: u32,
+    /// Numbers in its unknown, 3 or 6.
+    pub width: u8,
+    /// The sign of its pivots.
+    pub sign: f64,
+}
+
+impl Head {
+    #[inline(always)]
+    pub fn below(&self) -> core::ops::Range<usize> {
+        self.first_below as usize..self.end_below as usize
+    }
+}
+
+/// The row of a block below the diagonal: where its unknowns are in a vector, and how many.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Below {
+    pub offset: u32,
+    pub height: u8,
+}
+
 /// The shape of the factor of one topology.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Symbolic {
@@ -46,16 +77,20 @@ pub(crate) struct Symbolic {
     edges: Vec<[u32; 2]>,
     /// The column of each node.
     place: Vec<u32>,
-    /// Numbers in each column's unknown, 3 or 6; 1 for bodies and -1 for joints, the sign of their pivots; where they start in a vector.
+    /// Numbers in each column's unknown, 3 or 6; 1 for bodies and -1 for joints, the sign of their pivots; where they start in a vector, in which
+    /// three take four places.
     pub size: Vec<u8>,
     pub sign: Vec<f64>,
     pub offset: Vec<u32>,
-    /// Where the numbers of each column start: diagonal block, inverses of its diagonal, blocks below.
+    /// Where the numbers of each column start: diagonal block, rows of its factor's inverse, blocks below.
     pub start: Vec<u32>,
     /// Blocks below the diagonal, column by column: `column_start[c]..column_start[c + 1]`, rows ascending, and where their numbers are.
     pub column_start: Vec<u32>,
     pub row: Vec<u32>,
     pub at: Vec<u32>,
+    /// The same once more, for going through them.
+    pub heads: Vec<Head>,
+    pub below: Vec<Below>,
     /// The same blocks row by row: in which column, and at which place of the column-wise list.
     pub row_start: Vec<u32>,
     pub row_column: Vec<u32>,
@@ -218,14 +253,15 @@ impl Symbolic {
                 self.row_start[*r as usize + 2] += 1;
             }
             rows.sort_unstable();
+            let padded = |size: u8| stride(usize::from(size)) as u32;
             let width = u32::from(self.size[c]);
             self.offset.push(offset);
             self.start.push(start);
-            offset += width;
-            start += width * width + width;
+            offset += padded(self.size[c]);
+            start += 2 * width * padded(self.size[c]);
             for r in rows {
                 self.at.push(start);
-                start += width * u32::from(self.size[*r as usize]);
+                start += width * padded(self.size[*r as usize]);
             }
         }
         self.offset.push(offset);
@@ -266,6 +302,20 @@ impl Symbolic {
             };
             self.places.push(place);
         }
+        self.heads.clear();
+        self.heads.extend((0..self.nodes.len()).map(|c| Head {
+            start: self.start[c],
+            offset: self.offset[c],
+            first_below: self.column_start[c],
+            end_below: self.column_start[c + 1],
+            width: self.size[c],
+            sign: self.sign[c],
+        }));
+        self.below.clear();
+        self.below.extend(self.row.iter().map(|r| {
+            let r = *r as usize;
+            Below { offset: self.offset[r], height: self.size[r] }
+        }));
         let mut couplings = core::mem::take(&mut self.couplings);
         for (body, joints) in self.joints.iter().enumerate() {
             each_pair(joints, |i, j| {

@@ -14,10 +14,12 @@
 //! (Å. Björck, "Iterative refinement and reliable computing", 1990.)
 
 use super::factor::Factor;
-use super::kernels::{self, Six, by_sizes};
+use super::kernels::{Six, by_sizes, stride};
+use super::rows::{self, MOST_OWN, Twelve, UpToSix, Weighted, largest, sub_product, sub_square};
 use super::symbolic::{NONE, Place, Symbolic};
 use super::{NO_SPARSE_BODY, RowBlock, ScaledRow};
 use crate::pivoting::RowState;
+use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 
 /// A row with less CFM than this part of its diagonal gets more, made good by proximal steps.
 pub(crate) const LEAST_SIGMA: f64 = 1e-10;
@@ -27,6 +29,8 @@ pub(crate) const LEAST_SIGMA: f64 = 1e-10;
 const ROUGH: f64 = 1e-12;
 const FINE: f64 = 1e-15;
 const MOST_CORRECTIONS: usize = 8;
+/// A row is firm when its pivot is so many times its CFM: a proximal step then gains as many digits.
+const FIRM: f64 = 1e6;
 
 /// Which residuals a correction is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,8 +71,61 @@ pub(crate) struct System {
     scale: f64,
     /// Per row what it weighs in the matrix: `1 / S`, or 0 for a row whose force is given.
     pub weight: Vec<f64>,
+    /// Per block of rows: whether all of them have a weight.
+    whole: Vec<bool>,
     /// Whether some row's CFM was raised.
     pub raised: bool,
+    /// Whether proximal steps may converge slowly: a raised row may be redundant.
+    slow: bool,
+}
+
+/// A system with the rows that it is for, at work with the machine's instructions.
+struct Work<'a> {
+    system: &'a mut System,
+    blocks: &'a [RowBlock],
+    jacobian: &'a [ScaledRow],
+    task: Task<'a>,
+}
+
+enum Task<'a> {
+    /// Fills `diagonal` with `J J^T`.
+    Squares,
+    Factorise(&'a Symbolic),
+    Correct(&'a Symbolic, &'a [RowState], Pass),
+    SolveWeighted(&'a Symbolic, &'a [f64], &'a mut [f64]),
+    Product,
+    Accelerations,
+}
+
+impl QuadKernel for Work<'_> {
+    /// The largest change of an acceleration, where that is asked for.
+    type Out = f64;
+
+    #[inline(always)]
+    fn run<Q: Quad>(self) -> f64 {
+        let Self { system, blocks, jacobian, task } = self;
+        match task {
+            Task::Squares => {
+                for (diagonal, row) in system.diagonal.iter_mut().zip(jacobian) {
+                    *diagonal = rows::square::<Q>(row);
+                }
+            }
+            Task::Factorise(shape) => system.add_and_factorise::<Q>(blocks, jacobian, shape),
+            Task::Correct(shape, state, pass) => {
+                return system.correct::<Q>(blocks, jacobian, state, shape, pass);
+            }
+            Task::SolveWeighted(shape, rho, x) => {
+                system.solve_at_weights::<Q>(blocks, jacobian, shape, rho, x)
+            }
+            Task::Product => rows::multiply::<Q>(blocks, jacobian, &system.y, &mut system.jy),
+            Task::Accelerations => {
+                system.y.fill([0.0; 6]);
+                rows::add_transposed::<Q>(blocks, jacobian, &system.lambda, &mut system.y);
+                rows::multiply::<Q>(blocks, jacobian, &system.y, &mut system.jy);
+            }
+        }
+        0.0
+    }
 }
 
 impl System {
@@ -77,13 +134,12 @@ impl System {
         let (m, n) = (jacobian.len(), shape.bodies());
         self.z.resize(shape.offset.last().map_or(0, |n| *n as usize), 0.0);
         for v in [&mut self.lambda, &mut self.jy, &mut self.error, &mut self.dlambda] {
-            v.clear();
             v.resize(m, 0.0);
         }
         for v in [&mut self.y, &mut self.dy] {
-            v.clear();
             v.resize(n, [0.0; 6]);
         }
+        self.lambda.fill(0.0);
         self.sigma.clear();
         self.sigma.extend_from_slice(&sigma[..m]);
         self.rhs.clear();
@@ -91,16 +147,21 @@ impl System {
         for v in [&mut self.used_sigma, &mut self.inverse_sigma, &mut self.diagonal, &mut self.weight] {
             v.resize(m, 0.0);
         }
+        self.work(&[], jacobian, Task::Squares);
         self.raised = false;
         let out = self.diagonal.iter_mut().zip(&mut self.used_sigma).zip(&mut self.inverse_sigma);
-        for ((row, sigma), ((diagonal, used), inverse)) in jacobian.iter().zip(&self.sigma).zip(out) {
-            *diagonal = kernels::dot(&row[0], &row[0]) + kernels::dot(&row[1], &row[1]) + sigma;
+        for (sigma, ((diagonal, used), inverse)) in self.sigma.iter().zip(out) {
+            *diagonal += sigma;
             let least = LEAST_SIGMA * *diagonal;
             *used = if *sigma < least { least } else { *sigma };
             self.raised |= *used != *sigma;
             *inverse = if *used > 0.0 { 1.0 / *used } else { 0.0 };
         }
         self.factor.reset(shape);
+    }
+
+    fn work(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], task: Task<'_>) -> f64 {
+        dispatch_quads(Work { system: self, blocks, jacobian, task })
     }
 
     /// Adds the blocks of the free rows to the stale columns, and factors them.
@@ -111,16 +172,36 @@ impl System {
         state: &[RowState],
         shape: &Symbolic,
     ) {
-        for (row, state) in state.iter().enumerate() {
-            self.weight[row] = if *state == RowState::Free { self.inverse_sigma[row] } else { 0.0 };
+        for ((weight, inverse), state) in self.weight.iter_mut().zip(&self.inverse_sigma).zip(state) {
+            *weight = if *state == RowState::Free { *inverse } else { 0.0 };
         }
-        self.add_and_factorise(blocks, jacobian, shape);
+        self.work(blocks, jacobian, Task::Factorise(shape));
+        self.slow = self.raised && !self.holds_firmly(blocks, shape);
+    }
+
+    /// Whether the pivot of each raised row is so large that what its CFM was raised by hardly matters. With the other rows given, a redundant
+    /// one has a pivot of the size of its CFM; folded rows have none that tells.
+    fn holds_firmly(&self, blocks: &[RowBlock], shape: &Symbolic) -> bool {
+        blocks.iter().zip(&shape.places).all(|(block, place)| {
+            let range = block.range();
+            let sigma = self.sigma[range.clone()].iter().zip(&self.used_sigma[range.clone()]);
+            let mut raised = sigma
+                .zip(&self.weight[range])
+                .map(|((given, used), weight)| if given != used && *weight != 0.0 { *used } else { 0.0 });
+            if place.own == NONE {
+                return raised.all(|used| used == 0.0);
+            }
+            let own = place.own as usize;
+            let step = stride(usize::from(shape.size[own])) + 1;
+            let roots = self.factor.values[shape.start[own] as usize..].iter().step_by(step);
+            raised.zip(roots).all(|(used, root)| FIRM * used <= root * root)
+        })
     }
 
     /// Factors everything anew with the weights as they stand in `weight`.
     pub fn factorise_weighted(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
         self.factor.reset(shape);
-        self.add_and_factorise(blocks, jacobian, shape);
+        self.work(blocks, jacobian, Task::Factorise(shape));
     }
 
     /// Solves `(J J^T + 1 / weight) x = rho` for the rows that have a weight, one time and without refinement; 0 for the others.
@@ -132,205 +213,20 @@ impl System {
         rho: &[f64],
         x: &mut [f64],
     ) {
-        self.dy.fill([0.0; 6]);
-        for (block, place) in blocks.iter().zip(&shape.places) {
-            let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
-            for row in block.range() {
-                if place.own == NONE {
-                    let force = rho[row] * self.weight[row];
-                    kernels::add_scaled(&mut a, force, &jacobian[row][0]);
-                    kernels::add_scaled(&mut b, force, &jacobian[row][1]);
-                } else {
-                    self.dlambda[row] = if self.weight[row] == 0.0 { 0.0 } else { rho[row] };
-                }
-            }
-            if place.own == NONE {
-                add_to_bodies(&mut self.dy, block, &a, &b);
-            }
-        }
-        self.solve_factored(blocks, jacobian, shape, false);
-        for (block, place) in blocks.iter().zip(&shape.places) {
-            let [a, b] = of_bodies(&self.dy, block);
-            for row in block.range() {
-                x[row] = if place.own == NONE {
-                    let j = &jacobian[row];
-                    (rho[row] - (kernels::dot(&j[0], &a) + kernels::dot(&j[1], &b))) * self.weight[row]
-                } else {
-                    self.dlambda[row]
-                };
-            }
-        }
+        self.work(blocks, jacobian, Task::SolveWeighted(shape, rho, x));
     }
 
-    /// Adds the blocks of the rows that have a weight to the stale columns, and factors them.
-    fn add_and_factorise(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
-        self.factor.clear_stale(shape);
-        for (block, place) in blocks.iter().zip(&shape.places) {
-            if place.own == NONE {
-                self.add_folded(block, jacobian, place, shape);
-            } else {
-                self.add_joint(block, jacobian, place, shape);
-            }
-        }
-        for coupling in &shape.couplings {
-            let [later, earlier] = coupling.blocks.map(|i| i as usize);
-            if !self.factor.is_stale(shape.places[earlier].own) {
-                continue;
-            }
-            let height = shape.size[shape.places[later].own as usize];
-            let out = &mut self.factor.values[shape.at[coupling.at as usize] as usize..];
-            let [rows, cols] = [later, earlier].map(|i| blocks[i].range());
-            let [s, t] = coupling.sides.map(usize::from);
-            let rows = (&jacobian[rows.clone()], &self.weight[rows], s);
-            let cols = (&jacobian[cols.clone()], &self.weight[cols], t);
-            by_sizes!(sub_product, [height], (out, rows, cols));
-        }
-        self.factor.factorise(shape);
+    /// Sets `jy` to `J y`.
+    pub fn product(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow]) {
+        self.work(blocks, jacobian, Task::Product);
     }
 
-    /// `J^T S^-1 J` of rows without unknowns of their own.
-    fn add_folded(&mut self, block: &RowBlock, jacobian: &[ScaledRow], place: &Place, shape: &Symbolic) {
-        let (columns, pair) = (place.columns, place.at[0]);
-        let stale = columns.map(|c| self.factor.is_stale(c));
-        if !stale[0] && !stale[1] {
-            return;
-        }
-        let (mut a, mut b, mut across) = ([0.0; 36], [0.0; 36], [0.0; 36]);
-        let mut any = false;
-        // The pair's block stands in the column of the body that is eliminated first.
-        let (low, high) = if columns[0] < columns[1] { (0, 1) } else { (1, 0) };
-        for row in block.range() {
-            let (s, j) = (self.weight[row], &jacobian[row]);
-            if s == 0.0 {
-                continue;
-            }
-            any = true;
-            if stale[0] {
-                kernels::add_outer(&mut a, s, &j[0], &j[0]);
-            }
-            if stale[1] {
-                kernels::add_outer(&mut b, s, &j[1], &j[1]);
-            }
-            if pair != NONE && stale[low] {
-                kernels::add_outer(&mut across, s, &j[high], &j[low]);
-            }
-        }
-        if any {
-            if stale[0] {
-                self.factor.add_diagonal(columns[0], shape, &a);
-            }
-            if stale[1] {
-                self.factor.add_diagonal(columns[1], shape, &b);
-            }
-            if pair != NONE && stale[low] {
-                self.factor.add_below(pair, shape, &across);
-            }
-        }
+    /// Sets `y` to `J^T lambda` and `jy` to `J y`, from the forces alone.
+    pub fn accelerations(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow]) {
+        self.work(blocks, jacobian, Task::Accelerations);
     }
 
-    /// `-S` of a joint, `J` between it and its bodies; of light bodies, which are eliminated already, `-J J^T`.
-    fn add_joint(&mut self, block: &RowBlock, jacobian: &[ScaledRow], place: &Place, shape: &Symbolic) {
-        let own = place.own as usize;
-        let width = usize::from(shape.size[own]);
-        let range = block.range();
-        let (rows, weight) = (&jacobian[range.clone()], &self.weight[range]);
-        if self.factor.is_stale(place.own) {
-            let diagonal = &mut self.factor.values[shape.start[own] as usize..];
-            for (c, weight) in weight.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
-                // A row without a weight keeps the -1 that stands there.
-                diagonal[(width + 1) * c] = -1.0 / weight;
-            }
-            for (s, _) in light_sides(block, place) {
-                let rows = (rows, weight, s);
-                by_sizes!(sub_product, [width], (diagonal, rows, rows));
-            }
-        }
-        for (s, column) in place.columns.into_iter().enumerate() {
-            if column == NONE || !self.factor.is_stale(column.min(place.own)) {
-                continue;
-            }
-            let values = &mut self.factor.values[shape.at[place.at[s] as usize] as usize..];
-            for (r, (row, weight)) in rows.iter().zip(weight).enumerate() {
-                if *weight == 0.0 {
-                    continue;
-                }
-                for (c, x) in row[s].iter().enumerate() {
-                    // By columns: the one eliminated first.
-                    let at = if column < place.own { width * c + r } else { 6 * r + c };
-                    values[at] += x;
-                }
-            }
-        }
-    }
-
-    /// Solves with the factor: `dy` holds the right-hand side of the bodies and becomes their part of the solution, `dlambda` that of
-    /// the rows with unknowns of their own. If `at_rest`, the bodies' right-hand side is zero.
-    fn solve_factored(
-        &mut self,
-        blocks: &[RowBlock],
-        jacobian: &[ScaledRow],
-        shape: &Symbolic,
-        at_rest: bool,
-    ) {
-        let z = &mut self.z;
-        for (dy, column) in self.dy.iter().zip(&shape.body_column) {
-            if *column != NONE {
-                let at = shape.offset[*column as usize] as usize;
-                z[at..at + 6].copy_from_slice(dy);
-            }
-        }
-        for (block, place) in blocks.iter().zip(&shape.places) {
-            if place.own == NONE {
-                continue;
-            }
-            let own = place.own as usize;
-            let z = &mut z[shape.offset[own] as usize..shape.offset[own + 1] as usize];
-            let range = block.range();
-            let (force, weight) = (&self.dlambda[range.clone()], &self.weight[range.clone()]);
-            z[force.len()..].fill(0.0);
-            for (z, (force, weight)) in z.iter_mut().zip(force.iter().zip(weight)) {
-                *z = if *weight == 0.0 { 0.0 } else { *force };
-            }
-            if at_rest {
-                continue;
-            }
-            for (s, body) in light_sides(block, place) {
-                let dy = &self.dy[body];
-                for (z, (row, weight)) in z.iter_mut().zip(jacobian[range.clone()].iter().zip(weight)) {
-                    if *weight != 0.0 {
-                        *z -= kernels::dot(&row[s], dy);
-                    }
-                }
-            }
-        }
-        self.factor.solve(shape, z);
-        for (dy, column) in self.dy.iter_mut().zip(&shape.body_column) {
-            if *column != NONE {
-                let at = shape.offset[*column as usize] as usize;
-                dy.copy_from_slice(&z[at..at + 6]);
-            }
-        }
-        for (block, place) in blocks.iter().zip(&shape.places) {
-            if place.own == NONE {
-                continue;
-            }
-            let z = &z[shape.offset[place.own as usize] as usize..];
-            let range = block.range();
-            let (force, weight) = (&mut self.dlambda[range.clone()], &self.weight[range.clone()]);
-            for (z, (force, weight)) in z.iter().zip(force.iter_mut().zip(weight)) {
-                *force = if *weight == 0.0 { 0.0 } else { -z };
-            }
-            for (s, body) in light_sides(block, place) {
-                let mut sum = [0.0; 6];
-                for (row, force) in jacobian[range.clone()].iter().zip(force.iter()) {
-                    kernels::add_scaled(&mut sum, *force, &row[s]);
-                }
-                kernels::add_scaled(&mut self.dy[body], 1.0, &sum);
-            }
-        }
-    }
-
-    /// Solves for the free rows with the forces of the others as they stand in `lambda`. Returns the largest force.
+    /// Solves for the free rows, which are 0 in `lambda`, with the forces of the others as they stand there. Returns the largest force.
     pub fn solve(
         &mut self,
         blocks: &[RowBlock],
@@ -339,23 +235,16 @@ impl System {
         shape: &Symbolic,
     ) -> f64 {
         self.y.fill([0.0; 6]);
-        for (lambda, state) in self.lambda.iter_mut().zip(state) {
-            if *state == RowState::Free {
-                *lambda = 0.0;
-            }
-        }
-        (self.change, self.rate) = (self.correct(blocks, jacobian, state, shape, Pass::First), 1.0);
+        (self.change, self.rate) =
+            (self.work(blocks, jacobian, Task::Correct(shape, state, Pass::First)), 1.0);
         self.apply();
-        let (mut largest, mut strongest): (f64, f64) = (0.0, 0.0);
+        let mut strongest: f64 = 0.0;
         for (lambda, diagonal) in self.lambda.iter().zip(&self.diagonal) {
-            if lambda.abs() > largest || lambda.is_nan() {
-                largest = lambda.abs();
-            }
             let square = lambda * lambda * diagonal;
             strongest = if square > strongest { square } else { strongest };
         }
         self.scale = strongest.sqrt();
-        largest
+        largest(&self.lambda)
     }
 
     /// Refines the last solution until states can be told from it.
@@ -379,7 +268,7 @@ impl System {
         shape: &Symbolic,
         pass: Pass,
     ) {
-        if pass == Pass::Own && self.raised {
+        if pass == Pass::Own && self.slow {
             // How fast proximal steps converge, the first one does not tell.
             self.rate = 1.0;
         }
@@ -400,7 +289,7 @@ impl System {
             if self.change * self.rate <= goal {
                 break;
             }
-            let change = self.correct(blocks, jacobian, state, shape, pass);
+            let change = self.work(blocks, jacobian, Task::Correct(shape, state, pass));
             self.rate = change / self.change;
             self.change = change;
             let falls = self.rate < 0.5;
@@ -413,8 +302,185 @@ impl System {
         }
     }
 
+    /// Makes the correction that was found last.
+    fn apply(&mut self) {
+        for (y, dy) in self.y.as_flattened_mut().iter_mut().zip(self.dy.as_flattened()) {
+            *y += dy;
+        }
+        for (lambda, change) in self.lambda.iter_mut().zip(&self.dlambda) {
+            *lambda += change;
+        }
+    }
+
+    #[inline(always)]
+    fn solve_at_weights<Q: Quad>(
+        &mut self,
+        blocks: &[RowBlock],
+        jacobian: &[ScaledRow],
+        shape: &Symbolic,
+        rho: &[f64],
+        x: &mut [f64],
+    ) {
+        self.dy.fill([0.0; 6]);
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            let range = block.range();
+            let given = rho[range.clone()].iter().zip(&self.weight[range.clone()]);
+            if place.own == NONE {
+                let mut sum = Twelve::<Q>::zero();
+                for (row, (rho, weight)) in jacobian[range].iter().zip(given) {
+                    sum = sum.plus(rho * weight, row);
+                }
+                sum.add_to_bodies(&mut self.dy, block.bodies);
+            } else {
+                for (dlambda, (rho, weight)) in self.dlambda[range].iter_mut().zip(given) {
+                    *dlambda = if *weight == 0.0 { 0.0 } else { *rho };
+                }
+            }
+        }
+        self.solve_factored::<Q>(blocks, jacobian, shape, false);
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            let range = block.range();
+            if place.own != NONE {
+                x[range.clone()].copy_from_slice(&self.dlambda[range]);
+                continue;
+            }
+            let dy = Twelve::<Q>::of_bodies(&self.dy, block.bodies);
+            for first in range.clone().step_by(4) {
+                let rows = first..range.end.min(first + 4);
+                let products = rows::up_to_four(&jacobian[rows.clone()], dy);
+                for (row, product) in rows.zip(products) {
+                    x[row] = (rho[row] - product) * self.weight[row];
+                }
+            }
+        }
+    }
+
+    /// Adds the blocks of the rows that have a weight to the stale columns, and factors them.
+    #[inline(always)]
+    fn add_and_factorise<Q: Quad>(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
+        self.factor.clear_stale(shape);
+        self.whole.resize(blocks.len(), false);
+        for ((block, place), whole) in blocks.iter().zip(&shape.places).zip(&mut self.whole) {
+            let range = block.range();
+            let rows = Weighted { rows: &jacobian[range.clone()], weight: &self.weight[range] };
+            *whole = rows.weight.iter().all(|weight| *weight != 0.0);
+            if place.own == NONE {
+                add_folded::<Q>(&mut self.factor, rows, place, shape);
+            } else {
+                add_joint::<Q>(&mut self.factor, rows, light_sides(block, place), place, shape);
+            }
+        }
+        for coupling in &shape.couplings {
+            let [later, earlier] = coupling.blocks.map(|i| i as usize);
+            if !self.factor.is_stale(shape.places[earlier].own) {
+                continue;
+            }
+            let height = shape.size[shape.places[later].own as usize];
+            let out = &mut self.factor.values[shape.at[coupling.at as usize] as usize..];
+            let [rows, cols] = [later, earlier].map(|i| {
+                let range = blocks[i].range();
+                Weighted { rows: &jacobian[range.clone()], weight: &self.weight[range] }
+            });
+            let [s, t] = coupling.sides.map(usize::from);
+            by_sizes!(sub_product, Q, [height], (out, (rows, s), (cols, t)));
+        }
+        self.factor.factorise::<Q>(shape);
+    }
+
+    /// Solves with the factor: `dy` holds the right-hand side of the bodies and becomes their part of the solution, `dlambda` that of
+    /// the rows with unknowns of their own. If `at_rest`, the bodies' right-hand side is zero.
+    #[inline(always)]
+    fn solve_factored<Q: Quad>(
+        &mut self,
+        blocks: &[RowBlock],
+        jacobian: &[ScaledRow],
+        shape: &Symbolic,
+        at_rest: bool,
+    ) {
+        let (z, m) = (&mut self.z, jacobian.len());
+        for (dy, column) in self.dy.iter().zip(&shape.body_column) {
+            if *column != NONE {
+                let at = shape.offset[*column as usize] as usize;
+                z[at..at + 6].copy_from_slice(dy);
+            }
+        }
+        for ((block, place), whole) in blocks.iter().zip(&shape.places).zip(&self.whole) {
+            if place.own == NONE {
+                continue;
+            }
+            let range = block.range();
+            let own = place.own as usize;
+            let z = &mut z[shape.offset[own] as usize..shape.offset[own + 1] as usize];
+            if *whole && range.start + MOST_OWN <= m {
+                let force = UpToSix::<Q>::load(&self.dlambda, &range);
+                let light = light_bodies(block, place);
+                let right = if at_rest || light == [NO_SPARSE_BODY; 2] {
+                    force
+                } else {
+                    let dy = Twelve::of_bodies(&self.dy, light);
+                    force.minus(UpToSix::products(&jacobian[range.clone()], dy))
+                };
+                right.store(z, &(0..range.len()));
+                z[range.len()..].fill(0.0);
+                continue;
+            }
+            let (force, weight) = (&self.dlambda[range.clone()], &self.weight[range.clone()]);
+            z[force.len()..].fill(0.0);
+            let light = light_bodies(block, place);
+            if at_rest || light == [NO_SPARSE_BODY; 2] {
+                for (z, (force, weight)) in z.iter_mut().zip(force.iter().zip(weight)) {
+                    *z = if *weight == 0.0 { 0.0 } else { *force };
+                }
+                continue;
+            }
+            let dy = Twelve::<Q>::of_bodies(&self.dy, light);
+            let of_four = z.chunks_mut(4).zip(jacobian[range].chunks(4));
+            for ((z, rows), (force, weight)) in of_four.zip(force.chunks(4).zip(weight.chunks(4))) {
+                let products = rows::up_to_four(rows, dy);
+                for (z, (product, (force, weight))) in
+                    z.iter_mut().zip(products.into_iter().zip(force.iter().zip(weight)))
+                {
+                    *z = if *weight == 0.0 { 0.0 } else { force - product };
+                }
+            }
+        }
+        self.factor.solve::<Q>(shape, z);
+        for (dy, column) in self.dy.iter_mut().zip(&shape.body_column) {
+            if *column != NONE {
+                let at = shape.offset[*column as usize] as usize;
+                dy.copy_from_slice(&z[at..at + 6]);
+            }
+        }
+        for ((block, place), whole) in blocks.iter().zip(&shape.places).zip(&self.whole) {
+            if place.own == NONE {
+                continue;
+            }
+            let z = &z[shape.offset[place.own as usize] as usize..];
+            let range = block.range();
+            if *whole && range.start + MOST_OWN <= m {
+                let mut sum = Twelve::<Q>::zero();
+                for (row, z) in jacobian[range.clone()].iter().zip(z) {
+                    sum = sum.plus(-z, row);
+                }
+                UpToSix::<Q>::load(z, &(0..range.len())).negative().store(&mut self.dlambda, &range);
+                sum.add_to_bodies(&mut self.dy, light_bodies(block, place));
+                continue;
+            }
+            let (force, weight) = (&mut self.dlambda[range.clone()], &self.weight[range.clone()]);
+            let mut sum = Twelve::<Q>::zero();
+            for (row, (z, (force, weight))) in
+                jacobian[range].iter().zip(z.iter().zip(force.iter_mut().zip(weight)))
+            {
+                *force = if *weight == 0.0 { 0.0 } else { -z };
+                sum = sum.plus(*force, row);
+            }
+            sum.add_to_bodies(&mut self.dy, light_bodies(block, place));
+        }
+    }
+
     /// Finds one correction. Returns the largest change of an acceleration.
-    fn correct(
+    #[inline(always)]
+    fn correct<Q: Quad>(
         &mut self,
         blocks: &[RowBlock],
         jacobian: &[ScaledRow],
@@ -424,168 +490,145 @@ impl System {
     ) -> f64 {
         let first = pass == Pass::First;
         let sigma = if pass == Pass::Own { &self.sigma } else { &self.used_sigma };
-        for (dy, y) in self.dy.iter_mut().zip(&self.y) {
-            *dy = y.map(|y| -y);
+        for (dy, y) in self.dy.as_flattened_mut().iter_mut().zip(self.y.as_flattened()) {
+            *dy = -y;
         }
-        let mut at_rest = first;
-        for (block, place) in blocks.iter().zip(&shape.places) {
+        let (mut at_rest, m) = (first, jacobian.len());
+        for ((block, place), whole) in blocks.iter().zip(&shape.places).zip(&self.whole) {
             let range = block.range();
-            let rows = &jacobian[range.clone()];
-            let (lambda, state) = (&self.lambda[range.clone()], &state[range.clone()]);
-            let (sigma, rhs) = (&sigma[range.clone()], &self.rhs[range.clone()]);
-            if place.own != NONE && first && state.iter().all(|s| *s == RowState::Free) {
-                self.dlambda[range].copy_from_slice(rhs);
+            if place.own != NONE && *whole && first {
+                self.dlambda[range.clone()].copy_from_slice(&self.rhs[range]);
+                continue;
+            }
+            if place.own != NONE && *whole && range.start + MOST_OWN <= m {
+                let rows = &jacobian[range.clone()];
+                let jy = UpToSix::<Q>::products(rows, Twelve::of_bodies(&self.y, block.bodies));
+                let sigma = UpToSix::load(sigma, &range);
+                let error = UpToSix::load(&self.rhs, &range).minus(jy);
+                let error = error.minus(sigma.times(UpToSix::load(&self.lambda, &range)));
+                error.store(&mut self.dlambda, &range);
+                let mut sum = Twelve::<Q>::zero();
+                for (row, force) in rows.iter().zip(&self.lambda[range]) {
+                    sum = sum.plus(*force, row);
+                }
+                sum.add_to_bodies(&mut self.dy, block.bodies);
                 continue;
             }
             at_rest = false;
-            let (error, own) = (&mut self.error[range.clone()], &mut self.dlambda[range.clone()]);
-            let inverse_sigma = &self.inverse_sigma[range];
-            let [ya, yb] = if first { [[0.0; 6]; 2] } else { of_bodies(&self.y, block) };
-            let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
-            for (i, j) in rows.iter().enumerate() {
-                let mut force = lambda[i];
-                if state[i] == RowState::Free {
-                    let jy = if first { 0.0 } else { kernels::dot(&j[0], &ya) + kernels::dot(&j[1], &yb) };
-                    error[i] = rhs[i] - jy - sigma[i] * force;
-                    if place.own == NONE {
-                        force += error[i] * inverse_sigma[i];
-                    } else {
-                        own[i] = error[i];
+            let y = if first { Twelve::<Q>::zero() } else { Twelve::of_bodies(&self.y, block.bodies) };
+            let mut sum = Twelve::<Q>::zero();
+            for at in range.clone().step_by(4) {
+                let four = at..range.end.min(at + 4);
+                let rows = &jacobian[four.clone()];
+                let jy = if first { [0.0; 4] } else { rows::up_to_four(rows, y) };
+                let (lambda, state) = (&self.lambda[four.clone()], &state[four.clone()]);
+                let (sigma, rhs) = (&sigma[four.clone()], &self.rhs[four.clone()]);
+                let inverse_sigma = &self.inverse_sigma[four.clone()];
+                let (error, own) = (&mut self.error[four.clone()], &mut self.dlambda[four]);
+                for (i, row) in rows.iter().enumerate() {
+                    let mut force = lambda[i];
+                    if state[i] == RowState::Free {
+                        error[i] = rhs[i] - jy[i & 3] - sigma[i] * force;
+                        if place.own == NONE {
+                            force += error[i] * inverse_sigma[i];
+                        } else {
+                            own[i] = error[i];
+                        }
                     }
+                    sum = sum.plus(force, row);
                 }
-                kernels::add_scaled(&mut a, force, &j[0]);
-                kernels::add_scaled(&mut b, force, &j[1]);
             }
-            add_to_bodies(&mut self.dy, block, &a, &b);
+            sum.add_to_bodies(&mut self.dy, block.bodies);
         }
-        self.solve_factored(blocks, jacobian, shape, at_rest);
+        self.solve_factored::<Q>(blocks, jacobian, shape, at_rest);
         for (block, place) in blocks.iter().zip(&shape.places) {
-            if place.own == NONE {
-                let [da, db] = of_bodies(&self.dy, block);
-                for row in block.range() {
-                    self.dlambda[row] = 0.0;
-                    if state[row] == RowState::Free {
-                        let j = &jacobian[row];
-                        let jdy = kernels::dot(&j[0], &da) + kernels::dot(&j[1], &db);
-                        self.dlambda[row] = (self.error[row] - jdy) * self.inverse_sigma[row];
-                    }
+            if place.own != NONE {
+                continue;
+            }
+            let range = block.range();
+            let dy = Twelve::<Q>::of_bodies(&self.dy, block.bodies);
+            for at in range.clone().step_by(4) {
+                let four = at..range.end.min(at + 4);
+                let products = rows::up_to_four(&jacobian[four.clone()], dy);
+                for (row, product) in four.zip(products) {
+                    let free = state[row] == RowState::Free;
+                    let change = (self.error[row] - product) * self.inverse_sigma[row];
+                    self.dlambda[row] = if free { change } else { 0.0 };
                 }
             }
         }
-        let mut largest: f64 = 0.0;
-        for dy in self.dy.as_flattened() {
-            if dy.abs() > largest || dy.is_nan() {
-                largest = dy.abs();
-            }
-        }
-        largest
-    }
-
-    /// Makes the correction that was found last.
-    fn apply(&mut self) {
-        for (y, dy) in self.y.iter_mut().zip(&self.dy) {
-            kernels::add_scaled(y, 1.0, dy);
-        }
-        for (lambda, change) in self.lambda.iter_mut().zip(&self.dlambda) {
-            *lambda += change;
-        }
-    }
-
-    /// Sets `jy` to `J y`.
-    pub fn product(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow]) {
-        multiply(blocks, jacobian, &self.y, &mut self.jy);
-    }
-
-    /// Sets `y` to `J^T lambda` and `jy` to `J y`, from the forces alone.
-    pub fn accelerations(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow]) {
-        self.y.fill([0.0; 6]);
-        multiply_transposed(blocks, jacobian, &self.lambda, &mut self.y);
-        self.product(blocks, jacobian);
+        largest(self.dy.as_flattened())
     }
 }
 
-/// `out += J^T x`.
-fn multiply_transposed(blocks: &[RowBlock], jacobian: &[ScaledRow], x: &[f64], out: &mut [Six]) {
-    for block in blocks {
-        let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
-        for row in block.range() {
-            kernels::add_scaled(&mut a, x[row], &jacobian[row][0]);
-            kernels::add_scaled(&mut b, x[row], &jacobian[row][1]);
-        }
-        add_to_bodies(out, block, &a, &b);
-    }
-}
-
-/// `out = J y`.
-pub(crate) fn multiply(blocks: &[RowBlock], jacobian: &[ScaledRow], y: &[Six], out: &mut [f64]) {
-    for block in blocks {
-        let [ya, yb] = of_bodies(y, block);
-        for row in block.range() {
-            let j = &jacobian[row];
-            out[row] = kernels::dot(&j[0], &ya) + kernels::dot(&j[1], &yb);
-        }
-    }
-}
-
-/// What `y` holds for the bodies of a block; zero where there is none.
+/// `J^T S^-1 J` of rows without unknowns of their own.
 #[inline(always)]
-fn of_bodies(y: &[Six], block: &RowBlock) -> [Six; 2] {
-    block.bodies.map(|b| if b == NO_SPARSE_BODY { [0.0; 6] } else { y[b as usize] })
+fn add_folded<Q: Quad>(factor: &mut Factor, rows: Weighted<'_>, place: &Place, shape: &Symbolic) {
+    let (columns, pair) = (place.columns, place.at[0]);
+    let stale = columns.map(|c| factor.is_stale(c));
+    if (!stale[0] && !stale[1]) || rows.weight.iter().all(|weight| *weight == 0.0) {
+        return;
+    }
+    for side in 0..2 {
+        if stale[side] {
+            let block = rows::outer_products::<Q>(rows, side, side);
+            factor.add_diagonal(columns[side], shape, &block);
+        }
+    }
+    // The pair's block stands in the column of the body that is eliminated first.
+    let (low, high) = if columns[0] < columns[1] { (0, 1) } else { (1, 0) };
+    if pair != NONE && stale[low] {
+        factor.add_below(pair, shape, &rows::outer_products::<Q>(rows, high, low));
+    }
 }
 
-/// The bodies of a joint that have no column, each with its side.
+/// `-S` of a joint, `J` between it and its bodies; of light bodies, which are eliminated already, `-J J^T`.
 #[inline(always)]
-fn light_sides(block: &RowBlock, place: &Place) -> impl Iterator<Item = (usize, usize)> {
-    let sides = block.bodies.into_iter().zip(place.columns).enumerate();
-    sides
-        .filter(|(_, (body, column))| *column == NONE && *body != NO_SPARSE_BODY)
-        .map(|(s, (body, _))| (s, body as usize))
-}
-
-/// Rows with their weights, seen from one of their two bodies.
-type Side<'a> = (&'a [ScaledRow], &'a [f64], usize);
-
-/// `out -= A B^T` for rows `A` and `B` of the same body, without those that have no weight; `out` has `H` rows.
-#[inline(always)]
-fn sub_product<const H: usize>(out: &mut [f64], a: Side<'_>, b: Side<'_>) {
-    // Three rows fill two pairs of lanes.
-    if H == 3 { sub_product_in::<3, 4>(out, a, b) } else { sub_product_in::<6, 6>(out, a, b) }
-}
-
-#[inline(always)]
-fn sub_product_in<const H: usize, const W: usize>(
-    out: &mut [f64],
-    (a, a_weight, s): Side<'_>,
-    (b, b_weight, t): Side<'_>,
+fn add_joint<Q: Quad>(
+    factor: &mut Factor,
+    rows: Weighted<'_>,
+    light: [bool; 2],
+    place: &Place,
+    shape: &Symbolic,
 ) {
-    let mut transposed = [[0.0; W]; 6];
-    for (r, (row, weight)) in a.iter().zip(a_weight).enumerate().take(H) {
-        if *weight != 0.0 {
-            for q in 0..6 {
-                transposed[q][r] = row[s][q];
-            }
+    let own = place.own as usize;
+    let width = usize::from(shape.size[own]);
+    if factor.is_stale(place.own) {
+        let diagonal = &mut factor.values[shape.start[own] as usize..];
+        for (c, weight) in rows.weight.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+            // A row without a weight keeps the -1 that stands there.
+            diagonal[(stride(width) + 1) * c] = -1.0 / weight;
+        }
+        if light != [false; 2] {
+            by_sizes!(sub_square, Q, [width], (diagonal, rows, light));
         }
     }
-    for (out, (row, weight)) in out.chunks_exact_mut(H).zip(b.iter().zip(b_weight)) {
-        if *weight != 0.0 {
-            let mut sum = [0.0; W];
-            for (column, x) in transposed.iter().zip(&row[t]) {
-                for (sum, a) in sum.iter_mut().zip(column) {
-                    *sum += a * x;
-                }
+    for (s, column) in place.columns.into_iter().enumerate() {
+        if column == NONE || !factor.is_stale(column.min(place.own)) {
+            continue;
+        }
+        let values = &mut factor.values[shape.at[place.at[s] as usize] as usize..];
+        for (r, (row, weight)) in rows.rows.iter().zip(rows.weight).enumerate() {
+            if *weight == 0.0 {
+                continue;
             }
-            for (out, sum) in out.iter_mut().zip(sum) {
-                *out -= sum;
+            for (c, x) in row[s].iter().enumerate() {
+                // By columns: the one eliminated first.
+                let at = if column < place.own { stride(width) * c + r } else { 6 * r + c };
+                values[at] += x;
             }
         }
     }
 }
 
+/// Which of a joint's bodies have no column.
 #[inline(always)]
-fn add_to_bodies(y: &mut [Six], block: &RowBlock, a: &Six, b: &Six) {
-    for (body, sum) in block.bodies.into_iter().zip([a, b]) {
-        if body != NO_SPARSE_BODY {
-            kernels::add_scaled(&mut y[body as usize], 1.0, sum);
-        }
-    }
+fn light_sides(block: &RowBlock, place: &Place) -> [bool; 2] {
+    [0, 1].map(|s| place.columns[s] == NONE && block.bodies[s] != NO_SPARSE_BODY)
+}
+
+/// The same as bodies.
+#[inline(always)]
+fn light_bodies(block: &RowBlock, place: &Place) -> [u32; 2] {
+    [0, 1].map(|s| if place.columns[s] == NONE { block.bodies[s] } else { NO_SPARSE_BODY })
 }

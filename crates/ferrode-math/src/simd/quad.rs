@@ -3,7 +3,7 @@
 //! Where [`Compute`](super::Compute) leaves it to the compiler which numbers share a register, a [`QuadKernel`] says so. All
 //! operations are those of the lanes one by one, and the order of each sum is written out, so the bits are the same on every machine.
 
-use core::ops::{Add, Mul};
+use core::ops::{Add, Mul, Sub};
 
 /// A computation that is written once for registers of any width.
 ///
@@ -20,7 +20,7 @@ pub trait QuadKernel {
 ///
 /// The types that implement it can't be named outside: a kernel gets one from [`dispatch_quads`], which knows that the machine has
 /// the instructions.
-pub trait Quad: Copy + Add<Output = Self> + Mul<Output = Self> {
+pub trait Quad: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// Two `f64` of the same kind.
     type Pair: Pair;
 
@@ -32,10 +32,18 @@ pub trait Quad: Copy + Add<Output = Self> + Mul<Output = Self> {
     fn splat(x: f64) -> Self;
     /// `[self₀ + self₂, self₁ + self₃]`.
     fn fold(self) -> Self::Pair;
+    /// `[self₀, self₁]`.
+    fn low(self) -> Self::Pair;
+    /// `[self₂, self₃]`.
+    fn high(self) -> Self::Pair;
+    /// Two pairs as four numbers.
+    fn join(low: Self::Pair, high: Self::Pair) -> Self;
+    /// `(x₀ + x₁) + (x₂ + x₃)` of each of four.
+    fn sums(of: [Self; 4]) -> Self;
 }
 
 /// Two `f64`.
-pub trait Pair: Copy + Add<Output = Self> + Mul<Output = Self> {
+pub trait Pair: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// The numbers of an array.
     fn load(from: &[f64; 2]) -> Self;
     /// Writes them to an array.
@@ -46,6 +54,8 @@ pub trait Pair: Copy + Add<Output = Self> + Mul<Output = Self> {
     fn add_first(self, x: f64) -> Self;
     /// `self₀ + self₁`.
     fn sum(self) -> f64;
+    /// `x₀ + x₁` of each of two.
+    fn sums(of: [Self; 2]) -> Self;
 }
 
 /// Runs a kernel with the widest registers that the machine has: AVX2 on x86-64 if it is there, else what the target has.
@@ -68,6 +78,14 @@ impl<const N: usize> Add for Array<N> {
     #[inline(always)]
     fn add(self, b: Self) -> Self {
         Self(core::array::from_fn(|l| self.0[l] + b.0[l]))
+    }
+}
+
+impl<const N: usize> Sub for Array<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self(core::array::from_fn(|l| self.0[l] - b.0[l]))
     }
 }
 
@@ -101,6 +119,26 @@ impl Quad for Array<4> {
     fn fold(self) -> Array<2> {
         Array([self.0[0] + self.0[2], self.0[1] + self.0[3]])
     }
+
+    #[inline(always)]
+    fn low(self) -> Array<2> {
+        Array([self.0[0], self.0[1]])
+    }
+
+    #[inline(always)]
+    fn high(self) -> Array<2> {
+        Array([self.0[2], self.0[3]])
+    }
+
+    #[inline(always)]
+    fn join(low: Array<2>, high: Array<2>) -> Self {
+        Self([low.0[0], low.0[1], high.0[0], high.0[1]])
+    }
+
+    #[inline(always)]
+    fn sums(of: [Self; 4]) -> Self {
+        Self(of.map(|Self([a, b, c, d])| (a + b) + (c + d)))
+    }
 }
 
 impl Pair for Array<2> {
@@ -128,6 +166,11 @@ impl Pair for Array<2> {
     fn sum(self) -> f64 {
         self.0[0] + self.0[1]
     }
+
+    #[inline(always)]
+    fn sums(of: [Self; 2]) -> Self {
+        Self(of.map(|Self([a, b])| a + b))
+    }
 }
 
 #[cfg(test)]
@@ -146,8 +189,12 @@ mod tests {
             let (mut four, mut two) = ([0.0; 4], [0.0; 2]);
             (q * Q::splat(0.3) + q * q).store(&mut four);
             (p * Q::Pair::splat(0.7) + p * q.fold()).add_first(0.1).store(&mut two);
+            let (mut sums, mut joined) = ([0.0; 4], [0.0; 4]);
+            Q::sums([q, q * q, q - Q::splat(0.1), Q::splat(0.3) * q]).store(&mut sums);
+            Q::join(Q::Pair::sums([q.high(), q.low()]), p - q.low()).store(&mut joined);
             let sum = (q.fold() + p).sum();
-            four.iter().chain(&two).chain([&sum]).map(|x| x.to_bits()).collect()
+            let all = four.iter().chain(&two).chain(&sums).chain(&joined).chain([&sum]);
+            all.map(|x| x.to_bits()).collect()
         }
     }
 

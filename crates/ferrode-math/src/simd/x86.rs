@@ -608,13 +608,22 @@ pub(super) struct F64x4(__m256d);
 pub(super) struct F64x2(__m128d);
 
 macro_rules! f64_operators {
-    ($($type:ident $add:ident $mul:ident;)+) => {$(
+    ($($type:ident $add:ident $sub:ident $mul:ident;)+) => {$(
         impl Add for $type {
             type Output = Self;
             #[inline(always)]
             fn add(self, b: Self) -> Self {
                 // SAFETY: values of the type are only made where the machine has AVX2.
                 Self(unsafe { $add(self.0, b.0) })
+            }
+        }
+
+        impl Sub for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, b: Self) -> Self {
+                // SAFETY: as in `add`.
+                Self(unsafe { $sub(self.0, b.0) })
             }
         }
 
@@ -630,8 +639,8 @@ macro_rules! f64_operators {
 }
 
 f64_operators! {
-    F64x4 _mm256_add_pd _mm256_mul_pd;
-    F64x2 _mm_add_pd _mm_mul_pd;
+    F64x4 _mm256_add_pd _mm256_sub_pd _mm256_mul_pd;
+    F64x2 _mm_add_pd _mm_sub_pd _mm_mul_pd;
 }
 
 // Each function below that takes no value of the type is called by a kernel that `run_quads` runs, and by nobody else: the types are
@@ -662,6 +671,35 @@ impl Quad for F64x4 {
     fn fold(self) -> F64x2 {
         // SAFETY: the machine has AVX2.
         F64x2(unsafe { _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd::<1>(self.0)) })
+    }
+
+    #[inline(always)]
+    fn low(self) -> F64x2 {
+        // SAFETY: the machine has AVX2.
+        F64x2(unsafe { _mm256_castpd256_pd128(self.0) })
+    }
+
+    #[inline(always)]
+    fn high(self) -> F64x2 {
+        // SAFETY: the machine has AVX2.
+        F64x2(unsafe { _mm256_extractf128_pd::<1>(self.0) })
+    }
+
+    #[inline(always)]
+    fn join(low: F64x2, high: F64x2) -> Self {
+        // SAFETY: the machine has AVX2.
+        Self(unsafe { _mm256_insertf128_pd::<1>(_mm256_castpd128_pd256(low.0), high.0) })
+    }
+
+    #[inline(always)]
+    fn sums([a, b, c, d]: [Self; 4]) -> Self {
+        // SAFETY: the machine has AVX2.
+        unsafe {
+            // [a₀ + a₁, b₀ + b₁, a₂ + a₃, b₂ + b₃], and so for the others.
+            let (ab, cd) = (_mm256_hadd_pd(a.0, b.0), _mm256_hadd_pd(c.0, d.0));
+            let across = _mm256_permute2f128_pd::<0x21>(ab, cd);
+            Self(_mm256_add_pd(_mm256_blend_pd::<0b1100>(ab, cd), across))
+        }
     }
 }
 
@@ -694,5 +732,11 @@ impl Pair for F64x2 {
     fn sum(self) -> f64 {
         // SAFETY: the machine has AVX2.
         unsafe { _mm_cvtsd_f64(_mm_add_sd(self.0, _mm_unpackhi_pd(self.0, self.0))) }
+    }
+
+    #[inline(always)]
+    fn sums([a, b]: [Self; 2]) -> Self {
+        // SAFETY: the machine has AVX2, and with it SSE3.
+        Self(unsafe { _mm_hadd_pd(a.0, b.0) })
     }
 }

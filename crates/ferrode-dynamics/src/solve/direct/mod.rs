@@ -263,21 +263,24 @@ impl RowSystem {
     }
 
     fn load(&mut self, island: &Island, fps: f64, free: &[FreeMotion]) {
-        self.rhs.clear();
-        self.sigma.clear();
-        self.lo.clear();
-        self.hi.clear();
-        self.findex.clear();
+        let m = island.rows.len();
+        for v in [&mut self.rhs, &mut self.sigma, &mut self.lo, &mut self.hi] {
+            v.resize(m, 0.0);
+        }
+        self.findex.resize(m, -1);
         for span in &island.spans {
-            for row in &island.rows[span.first..span.first + span.count.rows] {
-                self.rhs.push(right_hand_side(row, span, fps, free));
-                self.sigma.push(row.cfm * fps);
-                self.lo.push(row.lo);
-                self.hi.push(row.hi);
-                self.findex.push(match row.friction_index {
+            let range = span.first..span.first + span.count.rows;
+            let bounds = self.lo[range.clone()].iter_mut().zip(&mut self.hi[range.clone()]);
+            let numbers = self.rhs[range.clone()].iter_mut().zip(&mut self.sigma[range.clone()]);
+            let out = bounds.zip(numbers).zip(&mut self.findex[range.clone()]);
+            for (row, (((lo, hi), (rhs, sigma)), findex)) in island.rows[range].iter().zip(out) {
+                *rhs = right_hand_side(row, span, fps, free);
+                *sigma = row.cfm * fps;
+                (*lo, *hi) = (row.lo, row.hi);
+                *findex = match row.friction_index {
                     NO_FRICTION_INDEX => -1,
                     local => span.first as i32 + local,
-                });
+                };
             }
         }
     }
@@ -337,8 +340,11 @@ pub(crate) fn sum_forces(island: &mut Island, work: &Workspace) {
     }
 }
 
-/// The velocity after the step of one body.
-pub(crate) fn update_velocity(body: &mut SolverBody, h: f64) {
-    body.frame.linear_velocity += body.force * (h * body.inv_mass);
-    body.frame.angular_velocity += body.inv_inertia * (body.torque * h);
+/// The linear and the angular velocity of a body after the step.
+pub(crate) fn velocity_after(body: &SolverBody, h: f64) -> [Vec3; 2] {
+    let frame = &body.frame;
+    [
+        frame.linear_velocity + body.force * (h * body.inv_mass),
+        frame.angular_velocity + body.inv_inertia * (body.torque * h),
+    ]
 }

@@ -128,17 +128,18 @@ impl Workspace {
         self.scale.clear();
         self.scale.extend(island.bodies.iter().map(|b| Scale::new(b.inv_mass, &b.inv_inertia)));
         self.blocks.clear();
-        self.jacobian.clear();
+        self.jacobian.resize(island.rows.len(), [[0.0; 6]; 2]);
         for span in &island.spans {
-            let movable = |place: u32| {
+            let scales = span.bodies.map(|place| {
                 let scale = self.scale.get(place as usize);
-                scale.is_some_and(|s| s.linear != 0.0 || s.angular != [0.0; 6])
-            };
-            let bodies = span.bodies.map(|place| if movable(place) { place } else { NO_SPARSE_BODY });
+                scale.filter(|s| s.linear != 0.0 || s.angular != [0.0; 6])
+            });
+            let bodies = [0, 1].map(|s| if scales[s].is_some() { span.bodies[s] } else { NO_SPARSE_BODY });
             self.blocks.push(RowBlock { bodies, first: span.first as u32, count: span.count.rows as u32 });
-            let [a, b] = bodies.map(|b| *self.scale.get(b as usize).unwrap_or(&Scale::IMMOVABLE));
-            for row in &island.rows[span.first..span.first + span.count.rows] {
-                self.jacobian.push([a.apply(row.linear1, row.angular1), b.apply(row.linear2, row.angular2)]);
+            let [a, b] = scales.map(|scale| scale.unwrap_or(&Scale::IMMOVABLE));
+            let range = span.first..span.first + span.count.rows;
+            for (out, row) in self.jacobian[range.clone()].iter_mut().zip(&island.rows[range]) {
+                *out = [a.apply(row.linear1, row.angular1), b.apply(row.linear2, row.angular2)];
             }
         }
     }

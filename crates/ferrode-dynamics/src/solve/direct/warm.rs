@@ -2,6 +2,7 @@
 //!
 //! A miss costs time, never the result: pivoting ends at the same states from everywhere.
 
+use crate::arena::NIL;
 use ferrode_lcp::RowState;
 use ferrode_math::Vec3;
 
@@ -10,7 +11,7 @@ use ferrode_math::Vec3;
 pub(super) struct Key {
     /// Slots of the bodies.
     pub bodies: [u32; 2],
-    /// Slot of the joint.
+    /// Slot of the joint, or [`NIL`].
     pub joint: u32,
 }
 
@@ -20,17 +21,20 @@ type States = [[Option<RowState>; 2]; 8];
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     key: Key,
-    /// Order of arrival, so that sorting has one outcome.
-    number: u32,
     point: Vec3,
     states: States,
 }
 
-/// The states of the last step and of this one.
+/// The states of the last step and of this one, in order of arrival.
 #[derive(Clone, Debug, Default)]
 pub(super) struct WarmStart {
     last: Vec<Entry>,
     next: Vec<Entry>,
+    /// The entries of `last` by key, and then by arrival; made when first needed, as `is_sorted` tells.
+    sorted: Vec<(Key, u32)>,
+    is_sorted: bool,
+    /// The entry after the one that was found last: mechanisms ask in the same order in each step.
+    expected: usize,
 }
 
 impl WarmStart {
@@ -39,27 +43,44 @@ impl WarmStart {
     }
 
     pub fn end_step(&mut self) {
-        self.next.sort_unstable_by_key(|e| (e.key, e.number));
         core::mem::swap(&mut self.last, &mut self.next);
+        self.is_sorted = false;
+        self.expected = 0;
     }
 
     pub fn add(&mut self, key: Key, point: Vec3, states: States) {
-        self.next.push(Entry { key, number: self.next.len() as u32, point, states });
+        self.next.push(Entry { key, point, states });
     }
 
     /// The states of the entry of that name with the nearest point.
-    pub fn find(&self, key: Key, point: Vec3) -> Option<States> {
-        let start = self.last.partition_point(|e| e.key < key);
-        let same = self.last[start..].iter().take_while(|e| e.key == key);
-        let mut nearest: Option<(f64, States)> = None;
-        for e in same {
-            let d = e.point - point;
+    pub fn find(&mut self, key: Key, point: Vec3) -> Option<States> {
+        // A joint has one entry, a pair of bodies one for each contact.
+        if key.joint != NIL
+            && let Some(entry) = self.last.get(self.expected)
+            && entry.key == key
+        {
+            self.expected += 1;
+            return Some(entry.states);
+        }
+        if !self.is_sorted {
+            self.is_sorted = true;
+            self.sorted.clear();
+            self.sorted.extend(self.last.iter().enumerate().map(|(i, entry)| (entry.key, i as u32)));
+            self.sorted.sort_unstable();
+        }
+        let start = self.sorted.partition_point(|(other, _)| *other < key);
+        let mut nearest: Option<(f64, usize)> = None;
+        for (_, i) in self.sorted[start..].iter().take_while(|(other, _)| *other == key) {
+            let i = *i as usize;
+            let d = self.last[i].point - point;
             let distance = d.dot(d);
-            if nearest.as_ref().is_none_or(|(least, _)| distance < *least) {
-                nearest = Some((distance, e.states));
+            if nearest.is_none_or(|(least, _)| distance < least) {
+                nearest = Some((distance, i));
             }
         }
-        nearest.map(|(_, states)| states)
+        let (_, i) = nearest?;
+        self.expected = i + 1;
+        Some(self.last[i].states)
     }
 }
 
@@ -82,5 +103,25 @@ mod tests {
         assert_eq!(warm.find(key(1, 2), Vec3::new(0.9, 0.2, 0.0)), Some(states(RowState::Lower)));
         assert_eq!(warm.find(key(1, 2), Vec3::new(0.2, 0.9, 0.0)), Some(states(RowState::Free)));
         assert_eq!(warm.find(key(2, 1), Vec3::X), None);
+    }
+
+    #[test]
+    fn joints_are_found_in_any_order() {
+        let key = |joint| Key { bodies: [u32::MAX; 2], joint };
+        let mut warm = WarmStart::default();
+        warm.begin_step();
+        let of = [RowState::Free, RowState::Lower, RowState::Upper].map(|s| [[Some(s); 2]; 8]);
+        for (joint, states) in [5, 3, 8].into_iter().zip(of) {
+            warm.add(key(joint), Vec3::ZERO, states);
+        }
+        warm.end_step();
+        for (joint, states) in
+            [(5, Some(of[0])), (8, Some(of[2])), (4, None), (3, Some(of[1])), (8, Some(of[2]))]
+        {
+            assert_eq!(warm.find(key(joint), Vec3::ZERO), states);
+        }
+        warm.begin_step();
+        warm.end_step();
+        assert_eq!(warm.find(key(5), Vec3::ZERO), None);
     }
 }
