@@ -86,6 +86,11 @@ impl Ferrode {
 
 #[allow(dead_code, reason = "not every program prints it")]
 impl Ferrode {
+    /// Lets steps use so many threads.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.world.set_threads(threads);
+    }
+
     /// Largest angle between the axes of a joint, in radians.
     pub fn axis_error(&self) -> f64 {
         let error = |joint: &JointKey| self.world.joint_error(*joint).expect(VALID).angle;

@@ -2,8 +2,10 @@
 //!
 //! ```text
 //! cargo run --release --bin growth -- [--smallest N] [--largest N] [--case WORD] [--reps N] [--size N] [--h SECONDS] [--from STEP]
-//!     [--steps N] [--ours]
+//!     [--steps N] [--ours] [--threads N]
 //! ```
+//!
+//! With more than one thread, times of ours are those of the clock on the wall.
 //!
 //! Contacts are found by Ferrode and given to both engines. Timed are the making of contact joints, the step, and removing them. Printed per
 //! size: median processor time of a step, factorisations per step, time per factorisation, blocks of the factor, residual and a
@@ -25,6 +27,7 @@ use ferrode_collide::{CollideOptions, Cuboid, Plane, Shape, narrow};
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Pose, Quat, Vec3, real};
 use ode::Ode;
+use std::time::Instant;
 
 /// A family of scenes.
 struct Case {
@@ -344,14 +347,21 @@ impl Figures {
 }
 
 /// One run of ours, which also records the contacts.
-fn run(case: &Case, n: usize, method: Method, figures: &mut Figures) -> (Ferrode, Vec<Vec<ContactLine>>) {
+fn run(
+    case: &Case,
+    n: usize,
+    method: Method,
+    threads: usize,
+    figures: &mut Figures,
+) -> (Ferrode, Vec<Vec<ContactLine>>) {
     let mut engine: Ferrode = new(case, n);
+    engine.set_threads(threads);
     let mut lists = Vec::new();
     for step in 0..case.steps[0] + case.steps[1] {
         let list = contacts(case.sides, &engine.poses());
-        let start = cpu::seconds();
+        let (start, wall) = (cpu::seconds(), Instant::now());
         engine.step(method, case.h, &list, Mu(0.5));
-        let seconds = cpu::seconds() - start;
+        let seconds = if threads > 1 { wall.elapsed().as_secs_f64() } else { cpu::seconds() - start };
         lists.push(list);
         if step < case.steps[0] {
             continue;
@@ -383,6 +393,7 @@ fn main() {
     println!(
         "case,n,rows,ms,factorisations,most,newton,us_per_factorisation,blocks,uncertified,fell_back,joint_error,libode_ms,ratio,quick_ms,libode_quick_ms,highest,mean_ms,axis_error"
     );
+    let threads = value("--threads").and_then(|v| v.parse().ok()).unwrap_or(1);
     for case in CASES.iter().filter(|c| c.name.contains(&wanted)) {
         let steps = [before.unwrap_or(case.steps[0]), timed.unwrap_or(case.steps[1])];
         let h = value("--h").and_then(|v| v.parse().ok()).unwrap_or(case.h);
@@ -395,7 +406,7 @@ fn main() {
             let (mut theirs, mut theirs_quick) = (Vec::new(), Vec::new());
             let (mut error, mut axis_error, mut highest) = (0.0, 0.0, 0.0);
             for _ in 0..reps {
-                let (engine, lists) = run(case, n, Method::Direct, &mut figures);
+                let (engine, lists) = run(case, n, Method::Direct, threads, &mut figures);
                 error = engine.joint_error();
                 axis_error = engine.axis_error();
                 highest = engine.poses().iter().map(|(p, _)| p.z).fold(f64::NEG_INFINITY, f64::max);
@@ -414,7 +425,7 @@ fn main() {
                 }
                 if !ours_only {
                     ode(Method::Quick, &mut theirs_quick);
-                    run(case, n, Method::Quick, &mut quick);
+                    run(case, n, Method::Quick, 1, &mut quick);
                 }
             }
             theirs.sort_by(f64::total_cmp);

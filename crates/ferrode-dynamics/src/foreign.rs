@@ -89,7 +89,7 @@ impl World {
         moved: MovedObserver<'_>,
     ) -> Result<StepReport, Error> {
         let mut report = StepReport::default();
-        self.step_in_full(stepper, h, random, moved, &mut report)?;
+        self.step_in_full(stepper, h, random, Some(moved), &mut report)?;
         Ok(report)
     }
 

@@ -18,6 +18,15 @@ pub(crate) struct Islands {
     stack: Vec<u32>,
 }
 
+impl Islands {
+    /// The bodies and the joints of an island.
+    pub fn of(&self, island: usize) -> (&[u32], &[u32]) {
+        let first = island.checked_sub(1).map_or((0, 0), |before| self.ends[before]);
+        let end = self.ends[island];
+        (&self.bodies[first.0..end.0], &self.joints[first.1..end.1])
+    }
+}
+
 impl World {
     /// Finds the islands of awake bodies, and wakes what a joint links to them.
     ///

@@ -10,12 +10,18 @@ use crate::foreign::MovedObserver;
 use crate::island::Islands;
 use crate::joint::Joint;
 use crate::rows::{JointRows, Row, RowCount, Wrench};
-use crate::solve::direct::{self, ImpactLaw};
+use crate::solve::direct::{self, ImpactLaw, IslandWork};
 use crate::solve::{quick, substep};
 use crate::timing::Phase;
 use crate::{Error, StepReport, World, gyroscopic, integrate};
 use ferrode_math::random::OdeRandom;
+use ferrode_math::stage::chunks;
 use ferrode_math::{Mat3, Vec3};
+
+/// So many joints are worth a second thread.
+const LEAST_JOINTS: usize = 40;
+/// Islands that are assembled before they are solved, for each thread: more share the load better and leave the caches.
+const ISLANDS_PER_THREAD: usize = 8;
 
 /// How a step finds the constraint forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -64,6 +70,8 @@ pub(crate) struct Island {
     pub lambda: Vec<f64>,
     /// The world's slots of `bodies`.
     slots: Vec<u32>,
+    /// How many of them, from the first, are the island's own; the others are quarantined ones at the ends of its joints.
+    movable: usize,
     /// Place of each of the world's bodies in `bodies`, or `NIL`.
     place: Vec<u32>,
 }
@@ -85,7 +93,8 @@ pub(crate) struct Scratch {
 #[derive(Debug, Default)]
 struct Stepping {
     islands: Islands,
-    island: Island,
+    /// At least one.
+    works: Vec<IslandWork>,
     direct: direct::Workspace,
     quick: quick::Workspace,
     fast: fast::Workspace,
@@ -133,7 +142,7 @@ impl World {
     /// As [`World::step`]; the report is left as it was then.
     pub fn step_into(&mut self, stepper: Stepper, h: f64, report: &mut StepReport) -> Result<(), Error> {
         let mut random = self.random;
-        let done = self.step_in_full(stepper, h, &mut random, &mut |_, _| {}, report);
+        let done = self.step_in_full(stepper, h, &mut random, None, report);
         self.random = random;
         done
     }
@@ -149,7 +158,7 @@ impl World {
         random: &mut OdeRandom,
     ) -> Result<StepReport, Error> {
         let mut report = StepReport::default();
-        self.step_in_full(stepper, h, random, &mut |_, _| {}, &mut report)?;
+        self.step_in_full(stepper, h, random, None, &mut report)?;
         Ok(report)
     }
 
@@ -158,11 +167,11 @@ impl World {
         stepper: Stepper,
         h: f64,
         random: &mut OdeRandom,
-        moved: MovedObserver<'_>,
+        mut moved: Option<MovedObserver<'_>>,
         report: &mut StepReport,
     ) -> Result<(), Error> {
         if stepper == Stepper::Substep {
-            *report = self.step_substep(h, (&mut [], None), &[], Some(moved))?;
+            *report = self.step_substep(h, (&mut [], None), &[], moved)?;
             return Ok(());
         }
         crate::softness::step_size(h)?;
@@ -170,70 +179,106 @@ impl World {
         report.clear();
         self.timing.begin();
         let mut stepping = self.scratch.stepping.take().unwrap_or_default();
-        let Stepping { islands, island, moved_island, direct, quick, impacts, .. } = &mut *stepping;
-        let in_turn = stepper == Stepper::Direct && self.params.direct.impacts == ImpactLaw::InTurn;
+        let Stepping { islands, works, moved_island, direct, quick, impacts, .. } = &mut *stepping;
 
         self.quarantine_unusable_bodies(report);
         self.auto_disable_bodies(h);
         self.find_islands(islands);
         let ctx = self.step_context(h);
         direct::begin_step(direct);
-        let (mut first_body, mut first_joint) = (0, 0);
-        for &(body_end, joint_end) in &islands.ends {
-            let bodies = &islands.bodies[first_body..body_end];
-            let joints = &islands.joints[first_joint..joint_end];
-            (first_body, first_joint) = (body_end, joint_end);
-            let survivors = self.survivors(bodies, joints);
-            let (bodies, joints) = match &survivors {
-                Some((bodies, joints)) => (bodies.as_slice(), joints.as_slice()),
-                None => (bodies, joints),
-            };
-
-            self.gather(bodies, joints, island);
-            if in_turn {
-                self.collide_in_turn(island, impacts);
+        let projects = stepper == Stepper::Direct && self.params.direct.project_joints;
+        let at_once =
+            if stepper == Stepper::Direct && moved.is_none() { self.islands_at_once(islands) } else { 1 };
+        if works.len() < at_once {
+            works.resize_with(at_once, IslandWork::default);
+        }
+        let mut first = 0;
+        while first < islands.ends.len() {
+            let works = &mut works[..at_once.min(islands.ends.len() - first)];
+            for (i, work) in works.iter_mut().enumerate() {
+                let (bodies, joints) = islands.of(first + i);
+                match self.survivors(bodies, joints) {
+                    Some((bodies, joints)) => self.gather(&bodies, &joints, &mut work.island),
+                    None => self.gather(bodies, joints, &mut work.island),
+                }
+                self.assemble(stepper, &ctx, &mut work.island, impacts, direct);
             }
-            self.apply_gravity(bodies, island);
-            self.apply_gyroscopic_torques(bodies, island, h);
-            self.count_rows(island, &ctx);
-            if stepper == Stepper::Direct {
-                direct::arrange(&mut island.spans, direct);
-            }
-            self.write_rows(island, &ctx);
             self.timing.spent_on(Phase::Assembly);
-            let solved = match stepper {
-                Stepper::Direct => {
-                    let number = report.islands;
-                    let (solved, island_solve) =
-                        direct::solve(island, h, &self.params.direct, number, direct);
-                    if island_solve.rows > 0 {
-                        report.solves.push(island_solve);
+            match (stepper, &mut *works) {
+                (Stepper::Direct, [work]) => work.solve(h, &self.params.direct, report.islands, direct),
+                (Stepper::Direct, works) => {
+                    let (settings, number, past) = (&self.params.direct, report.islands, &*direct);
+                    self.crew.each(chunks(works, 1), |i, work| {
+                        work.iter_mut().for_each(|work| work.solve(h, settings, number + i, past));
+                    });
+                }
+                (_, works) => {
+                    for work in works {
+                        work.solved = quick::solve(&mut work.island, h, &self.params.quick, random, quick);
+                        report.count_exit(quick.exit);
+                        quick::update_velocities(&mut work.island, h, quick);
                     }
-                    solved
                 }
-                _ => {
-                    let solved = quick::solve(island, h, &self.params.quick, random, quick);
-                    report.count_exit(quick.exit);
-                    solved
+            }
+            for work in &mut *works {
+                if stepper == Stepper::Direct {
+                    work.remember(direct);
+                    if work.report.rows > 0 {
+                        report.solves.push(work.report);
+                    }
                 }
-            };
-            report.count_island(bodies.len(), island.rows.len(), solved);
-            self.write_feedback(island);
-            match stepper {
-                Stepper::Direct => direct::sum_forces(island, direct),
-                _ => quick::update_velocities(island, h, quick),
+                let bodies = work.island.movable;
+                report.count_island(bodies, work.island.rows.len(), work.solved);
+                self.write_feedback(&work.island);
             }
             self.timing.spent_on(Phase::Solve);
-            let projects = stepper == Stepper::Direct && self.params.direct.project_joints;
-            if projects {
-                self.move_and_project(bodies, island, moved_island, &ctx, report.islands, direct);
+            let last = report.islands;
+            let number = last - works.len();
+            for (i, IslandWork { island, .. }) in works.iter().enumerate() {
+                if projects {
+                    self.move_and_project(island, moved_island, &ctx, number + i, direct);
+                }
+                let observer = moved.as_mut().map(|moved| &mut **moved as MovedObserver<'_>);
+                self.move_bodies(island, (stepper, h, projects), observer, report);
             }
-            self.move_bodies(bodies, island, (stepper, h, projects), moved, report);
             self.timing.spent_on(Phase::Integrate);
+            first += works.len();
         }
         direct::end_step(direct);
         self.scratch.stepping = Some(stepping);
         Ok(())
+    }
+
+    /// How many islands may be solved at the same time: one, unless there are threads for more, enough to do, and no callback that an earlier
+    /// one could change a later one by.
+    fn islands_at_once(&self, islands: &Islands) -> usize {
+        let threads = self.crew.threads();
+        if threads == 1 || islands.joints.len() < LEAST_JOINTS || islands.ends.len() < 2 {
+            return 1;
+        }
+        let watched = |slot: &u32| self.bodies.get(*slot).is_some_and(|body| body.moved.is_some());
+        if islands.bodies.iter().any(watched) { 1 } else { ISLANDS_PER_THREAD * threads }
+    }
+
+    /// Writes the rows of an island that is gathered.
+    fn assemble(
+        &mut self,
+        stepper: Stepper,
+        ctx: &StepContext,
+        island: &mut Island,
+        impacts: &mut impacts::Workspace,
+        direct: &mut direct::Workspace,
+    ) {
+        if stepper == Stepper::Direct && self.params.direct.impacts == ImpactLaw::InTurn {
+            self.collide_in_turn(island, impacts);
+        }
+        self.apply_gravity(island);
+        self.apply_gyroscopic_torques(island, ctx.h);
+        self.count_rows(island, ctx);
+        if stepper == Stepper::Direct {
+            direct::arrange(&mut island.spans, direct);
+        }
+        self.write_rows(island, ctx);
     }
 
     pub(crate) fn step_context(&self, h: f64) -> StepContext {
@@ -311,6 +356,7 @@ impl World {
             }
         };
         bodies.iter().for_each(|body| take(*body));
+        island.movable = bodies.len();
         for joint in joints {
             for node in self.joints.at(*joint).nodes {
                 if node.body != NIL && self.bodies.at(node.body).quarantined {
@@ -327,12 +373,12 @@ impl World {
         }));
     }
 
-    fn apply_gravity(&self, bodies: &[u32], island: &mut Island) {
+    fn apply_gravity(&self, island: &mut Island) {
         let g = self.params.gravity;
         if g == Vec3::ZERO {
             return;
         }
-        for (index, solver_body) in bodies.iter().zip(&mut island.bodies) {
+        for (index, solver_body) in island.slots[..island.movable].iter().zip(&mut island.bodies) {
             let body = self.bodies.at(*index);
             if body.gravity_mode {
                 solver_body.force += g * body.mass.mass;
@@ -340,8 +386,8 @@ impl World {
         }
     }
 
-    fn apply_gyroscopic_torques(&self, bodies: &[u32], island: &mut Island, h: f64) {
-        for (index, solver_body) in bodies.iter().zip(&mut island.bodies) {
+    fn apply_gyroscopic_torques(&self, island: &mut Island, h: f64) {
+        for (index, solver_body) in island.slots[..island.movable].iter().zip(&mut island.bodies) {
             let body = self.bodies.at(*index);
             let velocity = solver_body.frame.angular_velocity;
             if body.gyroscopic_mode && !body.is_kinematic() && velocity != Vec3::ZERO {
@@ -407,12 +453,12 @@ impl World {
     /// Velocity and pose, unless the bodies were moved already, moved callback, damping, cleared accumulators: body after body.
     fn move_bodies(
         &mut self,
-        bodies: &[u32],
         island: &Island,
         (stepper, h, moved): (Stepper, f64, bool),
-        observer: MovedObserver<'_>,
+        mut observer: Option<MovedObserver<'_>>,
         report: &mut StepReport,
     ) {
+        let bodies = &island.slots[..island.movable];
         if stepper == Stepper::Quick {
             // All velocities of the island are final before the first callback.
             for (index, solver_body) in bodies.iter().zip(&island.bodies) {
@@ -438,7 +484,9 @@ impl World {
             if let Some(moved) = body.moved.clone() {
                 moved(key, body);
             }
-            observer(self, key);
+            if let Some(observer) = &mut observer {
+                observer(self, key);
+            }
             let Ok(body) = self.body_mut(key) else { continue };
             let damping = body.damping;
             damping.apply(&mut body.frame.linear_velocity, &mut body.frame.angular_velocity);

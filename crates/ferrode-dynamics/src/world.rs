@@ -96,7 +96,7 @@ pub struct World {
     /// Numbers given to groups of bodies that fell asleep together.
     pub(crate) sleep_groups: u64,
     pub(crate) timing: crate::timing::Timing,
-    /// The threads that `Substep` may use.
+    /// The threads that `Substep` and `Direct` may use.
     pub(crate) crew: Crew,
     pub(crate) scratch: Scratch,
 }
@@ -291,13 +291,15 @@ impl World {
         Ok(())
     }
 
-    /// Threads that [`Stepper::Substep`](crate::Stepper::Substep) may use, the caller's included.
+    /// Threads that [`Stepper::Substep`](crate::Stepper::Substep) and [`Stepper::Direct`](crate::Stepper::Direct) may use, the caller's
+    /// included.
     pub fn threads(&self) -> usize {
         self.crew.threads()
     }
 
-    /// Sets how many threads `Substep` may use, the caller's included; 1 by default, and 0 for as many as the machine has. No
-    /// result depends on it, to the bit.
+    /// Sets how many threads `Substep` and `Direct` may use, the caller's included; 1 by default, and 0 for as many as the machine has. No
+    /// result depends on it, to the bit. `Direct` solves several islands at a time, unless a body has a moved callback, which could change
+    /// other islands.
     ///
     /// Helpers start here and sleep between steps. They end with the last world that has them: clones of a world have the same,
     /// as have worlds that are [given](World::set_crew) them. Where a platform has no threads, or grants fewer, there are
@@ -313,7 +315,7 @@ impl World {
         }
     }
 
-    /// The threads that `Substep` uses.
+    /// The threads that the world's steps use.
     pub fn crew(&self) -> &Crew {
         &self.crew
     }

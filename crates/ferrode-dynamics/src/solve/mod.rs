@@ -9,9 +9,10 @@ use crate::step::{JointSpan, SolverBody};
 use ferrode_math::Vec3;
 
 /// How the solution of an island ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Solved {
     /// Every row has its force.
+    #[default]
     Completely,
     /// Some rows got no force.
     Partly,

@@ -10,6 +10,7 @@ use crate::ends::StepContext;
 use crate::foreign::MovedObserver;
 use crate::rows::{JointRows, Row, Wrench};
 use crate::solve::Solved;
+use crate::solve::direct::IslandWork;
 use crate::{Error, StepReport, Stepper, World};
 use ferrode_lcp::dantzig::{DantzigStatus, DantzigWorkspace, solve_dantzig};
 use ferrode_lcp::dense::pad;
@@ -58,7 +59,11 @@ impl World {
         crate::softness::step_size(h)?;
         let mut report = StepReport::default();
         let mut stepping = self.scratch.stepping.take().unwrap_or_default();
-        let Stepping { island, fast: work, .. } = &mut *stepping;
+        let Stepping { works, fast: work, .. } = &mut *stepping;
+        if works.is_empty() {
+            works.push(IslandWork::default());
+        }
+        let island = &mut works[0].island;
         self.quarantine_unusable_bodies(&mut report);
         self.auto_disable_bodies(h);
         work.body_seen.clear();
@@ -174,7 +179,7 @@ impl World {
         for (body, given) in island.bodies.iter_mut().zip(&work.given) {
             (body.force, body.torque) = (given.force, given.torque);
         }
-        self.apply_gravity(&work.bodies, island);
+        self.apply_gravity(island);
         for (index, solver_body) in work.bodies.iter().zip(&mut island.bodies) {
             let body = self.bodies.at(*index);
             if body.gyroscopic_mode && !body.is_kinematic() {
@@ -194,7 +199,7 @@ impl World {
         self.write_feedback(island);
         report.count_island(work.bodies.len(), island.rows.len(), solved);
         report.islands -= 1;
-        self.move_bodies(&work.bodies, island, (Stepper::Direct, k, false), moved, report);
+        self.move_bodies(island, (Stepper::Direct, k, false), Some(moved), report);
     }
 
     /// Bodies at the end of a joint that sleep on come along as immovable ones.

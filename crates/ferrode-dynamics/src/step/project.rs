@@ -18,13 +18,13 @@ impl World {
     /// the first callback.
     pub(super) fn move_and_project(
         &mut self,
-        bodies: &[u32],
         island: &Island,
         moved: &mut Island,
         ctx: &StepContext,
         number: usize,
         work: &mut direct::Workspace,
     ) {
+        let bodies = &island.slots[..island.movable];
         for (index, solver_body) in bodies.iter().zip(&island.bodies) {
             let body = self.bodies.at_mut(*index);
             body.advance_velocity(solver_body, ctx.h);

@@ -18,6 +18,7 @@ use crate::rows::{NO_FRICTION_INDEX, Row};
 use crate::step::{Island, JointSpan, SolverBody};
 use ferrode_math::Vec3;
 pub(crate) use project::{Displacement, keep_rigid};
+use warm::WarmStart;
 
 /// What bounds the friction of contacts whose bounds hang on the normal force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,17 +86,32 @@ impl Default for DirectSettings {
     }
 }
 
-/// Memory of the stepper. Dropping it costs time and changes nothing.
+/// Memory of the stepper.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
     arrangement: arrange::Memory,
+    warm: WarmStart,
+    projection: project::Workspace,
+}
+
+/// An island, and what its solution needs of memory, of which dropping costs time and changes nothing. Several may be solved at once.
+#[derive(Debug, Default)]
+pub(crate) struct IslandWork {
+    pub island: Island,
+    /// The answer; the forces are in the island.
+    pub solved: Solved,
+    pub report: IslandSolve,
+    memory: Memory,
+}
+
+#[derive(Debug, Default)]
+struct Memory {
     free: Vec<FreeMotion>,
     system: RowSystem,
     spans: SpansByBody,
     dense: dense::Workspace,
     sparse: sparse::Workspace,
     cone: cone::Workspace,
-    projection: project::Workspace,
 }
 
 /// What all methods need of the rows: right-hand side, CFM/h, bounds.
@@ -122,12 +138,12 @@ pub(crate) fn arrange(spans: &mut Vec<JointSpan>, work: &mut Workspace) {
 
 /// Begins a step.
 pub(crate) fn begin_step(work: &mut Workspace) {
-    work.sparse.warm.begin_step();
+    work.warm.begin_step();
 }
 
 /// Ends a step.
 pub(crate) fn end_step(work: &mut Workspace) {
-    work.sparse.warm.end_step();
+    work.warm.end_step();
 }
 
 /// Finds how an island's bodies have to move for the rows of its joints to have no error of position; nothing if there are none.
@@ -141,31 +157,44 @@ pub(crate) fn project<'a>(
     work.projection.solve(island, settings, number)
 }
 
-/// Finds the forces of an island's rows; `number` is the island's in this step.
-pub(crate) fn solve(
-    island: &mut Island,
-    h: f64,
-    settings: &DirectSettings,
+impl IslandWork {
+    /// Finds the forces of the island's rows, and adds them to all others of its bodies; `number` is the island's in this step. `past` is
+    /// only read.
+    pub fn solve(&mut self, h: f64, settings: &DirectSettings, number: usize, past: &Workspace) {
+        let Self { island, solved, report, memory } = self;
+        let m = island.rows.len();
+        island.lambda.clear();
+        island.lambda.resize(m, 0.0);
+        *report = IslandSolve { rows: m, ..IslandSolve::default() };
+        *solved = Solved::Completely;
+        if m == 0 {
+            return;
+        }
+        let fps = 1.0 / h;
+        free_motions(&island.bodies, fps, &mut memory.free);
+        memory.system.load(island, fps, &memory.free);
+        memory.spans.list(island);
+        let problem = Problem { settings, number, warm: &past.warm };
+        *solved = solve_boxed(island, problem, Start::Step, memory, report);
+        if settings.friction == FrictionLaw::Cone && memory.cone.find(island) {
+            *solved = solve_cone(island, fps, problem, memory, report);
+        }
+        sum_forces(island, &memory.spans);
+    }
+
+    /// Keeps what the next step can begin from.
+    pub fn remember(&mut self, work: &mut Workspace) {
+        self.memory.sparse.remember(&self.island, &mut work.warm);
+    }
+}
+
+/// What the solution of an island depends on besides its rows.
+#[derive(Clone, Copy)]
+struct Problem<'a> {
+    settings: &'a DirectSettings,
+    /// The island's number.
     number: usize,
-    work: &mut Workspace,
-) -> (Solved, IslandSolve) {
-    let m = island.rows.len();
-    island.lambda.clear();
-    island.lambda.resize(m, 0.0);
-    let mut report = IslandSolve { rows: m, ..IslandSolve::default() };
-    if m == 0 {
-        return (Solved::Completely, report);
-    }
-    let fps = 1.0 / h;
-    free_motions(&island.bodies, fps, &mut work.free);
-    work.system.load(island, fps, &work.free);
-    work.spans.list(island);
-    let solved = solve_boxed(island, settings, number, Start::Step, work, &mut report);
-    if settings.friction == FrictionLaw::Cone && work.cone.find(island) {
-        let solved = solve_cone(island, fps, settings, number, work, &mut report);
-        return (solved, report);
-    }
-    (solved, report)
+    warm: &'a WarmStart,
 }
 
 /// What block pivoting starts from.
@@ -180,23 +209,23 @@ enum Start {
 /// Solves the problem that is loaded.
 fn solve_boxed(
     island: &mut Island,
-    settings: &DirectSettings,
-    number: usize,
+    problem: Problem<'_>,
     start: Start,
-    work: &mut Workspace,
+    memory: &mut Memory,
     report: &mut IslandSolve,
 ) -> Solved {
+    let settings = problem.settings;
     let dense = island.rows.len() < settings.dense_rows
-        || (settings.dense_rows > 0 && work.system.is_small_figure(island.rows.len()));
+        || (settings.dense_rows > 0 && memory.system.is_small_figure(island.rows.len()));
     if dense {
-        let solved = dense::solve(island, &work.system, &work.spans, &mut work.dense, report);
+        let solved = dense::solve(island, &memory.system, &memory.spans, &mut memory.dense, report);
         if solved == Solved::Completely {
             return solved;
         }
         // ODE gives up here, and bodies fall through each other.
         report.fell_back = true;
     }
-    let solved = sparse::solve(island, &work.system, settings, number, start, &mut work.sparse, report);
+    let solved = sparse::solve(island, &memory.system, problem, start, &mut memory.sparse, report);
     if dense {
         report.method = DirectMethod::BlockPivoting;
     }
@@ -207,32 +236,31 @@ fn solve_boxed(
 fn solve_cone(
     island: &mut Island,
     fps: f64,
-    settings: &DirectSettings,
-    number: usize,
-    work: &mut Workspace,
+    problem: Problem<'_>,
+    memory: &mut Memory,
     report: &mut IslandSolve,
 ) -> Solved {
-    work.cone.begin(island);
+    memory.cone.begin(island);
     let mut start = Start::Step;
     for sweep in 0..cone::MOST_SWEEPS {
-        work.cone.push(island);
-        let pushed = work.cone.take_pushed();
-        let free = &work.free;
-        work.cone.turn(island, sweep, fps, |island, span, row| {
+        memory.cone.push(island);
+        let pushed = memory.cone.take_pushed();
+        let free = &memory.free;
+        memory.cone.turn(island, sweep, fps, |island, span, row| {
             let span = &island.spans[span];
             [cone::along(row, span.bodies, &pushed), right_hand_side(row, span, fps, free)]
         });
-        work.cone.give_pushed(pushed);
-        work.system.load(island, fps, &work.free);
+        memory.cone.give_pushed(pushed);
+        memory.system.load(island, fps, &memory.free);
         report.residual = 0.0;
         report.largest_force = 0.0;
         let factorisations = report.factorisations;
-        let solved = solve_boxed(island, settings, number, start, work, report);
+        let solved = solve_boxed(island, problem, start, memory, report);
         report.factorisations += factorisations;
         report.friction_sweeps += 1;
         start = Start::Problem;
-        let change = work.cone.turn_back(island);
-        work.cone.restore(island);
+        let change = memory.cone.turn_back(island);
+        memory.cone.restore(island);
         if cone::Workspace::converged(change, sweep) {
             return solved;
         }
@@ -319,13 +347,10 @@ fn jacobian(row: &Row, side: u32) -> (Vec3, Vec3) {
 }
 
 /// Adds the constraint forces Jᵀλ to all other forces of an island's bodies.
-pub(crate) fn sum_forces(island: &mut Island, work: &Workspace) {
-    if island.rows.is_empty() {
-        return;
-    }
+fn sum_forces(island: &mut Island, spans: &SpansByBody) {
     for body in 0..island.bodies.len() {
         let (mut force, mut torque) = (Vec3::ZERO, Vec3::ZERO);
-        for (span, side) in &work.spans.at_body[work.spans.starts[body]..work.spans.starts[body + 1]] {
+        for (span, side) in &spans.at_body[spans.starts[body]..spans.starts[body + 1]] {
             let span = &island.spans[*span as usize];
             let range = span.first..span.first + span.count.rows;
             for (row, lambda) in island.rows[range.clone()].iter().zip(&island.lambda[range]) {

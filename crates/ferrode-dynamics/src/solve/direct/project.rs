@@ -9,7 +9,7 @@
 //! a step of Newton's method, by the solver of the step itself, of which only the rows without bounds are there. (M. B. Cline and D. K. Pai,
 //! "Post-stabilization for rigid body simulation with contact and constraints", ICRA 2003.)
 
-use super::{DirectSettings, RowSystem, Start, jacobian, sparse};
+use super::{DirectSettings, Problem, RowSystem, Start, WarmStart, jacobian, sparse};
 use crate::ends::StepContext;
 use crate::report::IslandSolve;
 use crate::rows::{NO_FRICTION_INDEX, Row, RowKind};
@@ -76,7 +76,8 @@ impl Workspace {
         island.lambda.resize(island.rows.len(), 0.0);
         let settings = DirectSettings { warm_start: false, ..*settings };
         let mut report = IslandSolve::default();
-        sparse::solve(island, system, &settings, number, Start::Step, sparse, &mut report);
+        let problem = Problem { settings: &settings, number, warm: &WarmStart::default() };
+        sparse::solve(island, system, problem, Start::Step, sparse, &mut report);
         moves.resize(island.bodies.len(), Displacement::default());
         for span in &island.spans {
             let range = span.first..span.first + span.count.rows;

@@ -2,8 +2,8 @@
 //!
 //! With M⁻¹ = C Cᵀ per body (C: the root of the inverse mass, and the Cholesky factor of the inverse inertia) a row's Jacobian becomes J C.
 
-use super::warm::{Key, WarmStart};
-use super::{DirectSettings, RowSystem, Start};
+use super::warm::{Expected, Key, WarmStart};
+use super::{Problem, RowSystem, Start};
 use crate::arena::NIL;
 use crate::report::{DirectMethod, IslandSolve};
 use crate::rows::RowKind;
@@ -23,7 +23,9 @@ pub(super) struct Workspace {
     jacobian: Vec<ScaledRow>,
     states: Vec<[Option<RowState>; 2]>,
     pivoting: PivotingWorkspace,
-    pub warm: WarmStart,
+    expected: Expected,
+    /// The states of a step's first answer, to be remembered; empty if there is none.
+    answered: Vec<[Option<RowState>; 2]>,
 }
 
 /// C of a body.
@@ -69,15 +71,14 @@ impl Scale {
 pub(super) fn solve(
     island: &mut Island,
     system: &RowSystem,
-    settings: &DirectSettings,
-    number: usize,
+    Problem { settings, number, warm }: Problem<'_>,
     start: Start,
     work: &mut Workspace,
     report: &mut IslandSolve,
 ) -> Solved {
     work.load(island);
     if start == Start::Step || work.states.len() != island.rows.len() {
-        work.guess(island, settings.warm_start);
+        work.guess(island, settings.warm_start.then_some(warm));
     }
     let mut problem = SparseLcp {
         bodies: island.bodies.len(),
@@ -110,7 +111,7 @@ pub(super) fn solve(
                 return Solved::Partly;
             }
             if settings.warm_start && start == Start::Step {
-                work.remember(island);
+                work.answered.clone_from(&work.states);
             }
             if report.certified() { Solved::Completely } else { Solved::Partly }
         }
@@ -145,15 +146,13 @@ impl Workspace {
     }
 
     /// Asks what the rows did in the step before.
-    fn guess(&mut self, island: &Island, warm: bool) {
+    fn guess(&mut self, island: &Island, warm: Option<&WarmStart>) {
         self.states.clear();
         self.states.resize(island.rows.len(), [None; 2]);
-        if !warm {
-            return;
-        }
+        let Some(warm) = warm else { return };
         for span in &island.spans {
             if let Some((key, point)) = key(island, span)
-                && let Some(states) = self.warm.find(key, point)
+                && let Some(states) = warm.find(key, point, &mut self.expected)
             {
                 for row in span.first..span.first + span.count.rows {
                     self.states[row] = states[usize::from(island.rows[row].slot) & 7];
@@ -162,16 +161,20 @@ impl Workspace {
         }
     }
 
-    fn remember(&mut self, island: &Island) {
-        for span in &island.spans {
-            if let Some((key, point)) = key(island, span) {
-                let mut states = [[None; 2]; 8];
-                for row in span.first..span.first + span.count.rows {
-                    states[usize::from(island.rows[row].slot) & 7] = self.states[row];
+    /// Keeps the states of an answer for the next step.
+    pub fn remember(&mut self, island: &Island, warm: &mut WarmStart) {
+        if self.answered.len() == island.rows.len() {
+            for span in &island.spans {
+                if let Some((key, point)) = key(island, span) {
+                    let mut states = [[None; 2]; 8];
+                    for row in span.first..span.first + span.count.rows {
+                        states[usize::from(island.rows[row].slot) & 7] = self.answered[row];
+                    }
+                    warm.add(key, point, states);
                 }
-                self.warm.add(key, point, states);
             }
         }
+        self.answered.clear();
     }
 }
 

@@ -30,12 +30,13 @@ struct Entry {
 pub(super) struct WarmStart {
     last: Vec<Entry>,
     next: Vec<Entry>,
-    /// The entries of `last` by key, and then by arrival; made when first needed, as `is_sorted` tells.
+    /// The entries of `last` by key, and then by arrival.
     sorted: Vec<(Key, u32)>,
-    is_sorted: bool,
-    /// The entry after the one that was found last: mechanisms ask in the same order in each step.
-    expected: usize,
 }
+
+/// Where in a list who asks for all spans of an island expects the next one: mechanisms ask in the same order in each step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Expected(Option<usize>);
 
 impl WarmStart {
     pub fn begin_step(&mut self) {
@@ -44,8 +45,9 @@ impl WarmStart {
 
     pub fn end_step(&mut self) {
         core::mem::swap(&mut self.last, &mut self.next);
-        self.is_sorted = false;
-        self.expected = 0;
+        self.sorted.clear();
+        self.sorted.extend(self.last.iter().enumerate().map(|(i, entry)| (entry.key, i as u32)));
+        self.sorted.sort_unstable();
     }
 
     pub fn add(&mut self, key: Key, point: Vec3, states: States) {
@@ -53,20 +55,15 @@ impl WarmStart {
     }
 
     /// The states of the entry of that name with the nearest point.
-    pub fn find(&mut self, key: Key, point: Vec3) -> Option<States> {
+    pub fn find(&self, key: Key, point: Vec3, expected: &mut Expected) -> Option<States> {
         // A joint has one entry, a pair of bodies one for each contact.
         if key.joint != NIL
-            && let Some(entry) = self.last.get(self.expected)
+            && let Some(i) = expected.0
+            && let Some(entry) = self.last.get(i)
             && entry.key == key
         {
-            self.expected += 1;
+            expected.0 = Some(i + 1);
             return Some(entry.states);
-        }
-        if !self.is_sorted {
-            self.is_sorted = true;
-            self.sorted.clear();
-            self.sorted.extend(self.last.iter().enumerate().map(|(i, entry)| (entry.key, i as u32)));
-            self.sorted.sort_unstable();
         }
         let start = self.sorted.partition_point(|(other, _)| *other < key);
         let mut nearest: Option<(f64, usize)> = None;
@@ -79,14 +76,14 @@ impl WarmStart {
             }
         }
         let (_, i) = nearest?;
-        self.expected = i + 1;
+        expected.0 = Some(i + 1);
         Some(self.last[i].states)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Key, WarmStart};
+    use super::{Expected, Key, WarmStart};
     use ferrode_lcp::RowState;
     use ferrode_math::Vec3;
 
@@ -94,21 +91,27 @@ mod tests {
     fn the_nearest_point_of_the_pair_is_found() {
         let key = |a, b| Key { bodies: [a, b], joint: u32::MAX };
         let states = |s| [[Some(s); 2]; 8];
-        let mut warm = WarmStart::default();
+        let (mut warm, mut expected) = (WarmStart::default(), Expected::default());
         warm.begin_step();
         warm.add(key(3, 1), Vec3::X, states(RowState::Upper));
         warm.add(key(1, 2), Vec3::X, states(RowState::Lower));
         warm.add(key(1, 2), Vec3::Y, states(RowState::Free));
         warm.end_step();
-        assert_eq!(warm.find(key(1, 2), Vec3::new(0.9, 0.2, 0.0)), Some(states(RowState::Lower)));
-        assert_eq!(warm.find(key(1, 2), Vec3::new(0.2, 0.9, 0.0)), Some(states(RowState::Free)));
-        assert_eq!(warm.find(key(2, 1), Vec3::X), None);
+        assert_eq!(
+            warm.find(key(1, 2), Vec3::new(0.9, 0.2, 0.0), &mut expected),
+            Some(states(RowState::Lower))
+        );
+        assert_eq!(
+            warm.find(key(1, 2), Vec3::new(0.2, 0.9, 0.0), &mut expected),
+            Some(states(RowState::Free))
+        );
+        assert_eq!(warm.find(key(2, 1), Vec3::X, &mut expected), None);
     }
 
     #[test]
     fn joints_are_found_in_any_order() {
         let key = |joint| Key { bodies: [u32::MAX; 2], joint };
-        let mut warm = WarmStart::default();
+        let (mut warm, mut expected) = (WarmStart::default(), Expected::default());
         warm.begin_step();
         let of = [RowState::Free, RowState::Lower, RowState::Upper].map(|s| [[Some(s); 2]; 8]);
         for (joint, states) in [5, 3, 8].into_iter().zip(of) {
@@ -118,10 +121,10 @@ mod tests {
         for (joint, states) in
             [(5, Some(of[0])), (8, Some(of[2])), (4, None), (3, Some(of[1])), (8, Some(of[2]))]
         {
-            assert_eq!(warm.find(key(joint), Vec3::ZERO), states);
+            assert_eq!(warm.find(key(joint), Vec3::ZERO, &mut expected), states);
         }
         warm.begin_step();
         warm.end_step();
-        assert_eq!(warm.find(key(5), Vec3::ZERO), None);
+        assert_eq!(warm.find(key(5), Vec3::ZERO, &mut expected), None);
     }
 }
