@@ -54,14 +54,16 @@ fn run(threads: usize) -> (u64, usize) {
         assert!(step.dynamics.quarantined.is_empty());
         most = most.max(step.dynamics.islands);
         for solve in &step.dynamics.solves {
-            [solve.rows as f64, f64::from(solve.factorisations), solve.residual, solve.largest_force]
-                .map(&mut add);
+            let told =
+                [solve.rows as f64, f64::from(solve.factorisations), solve.residual, solve.largest_force];
+            told.into_iter().for_each(&mut add);
         }
     }
     for (_, body) in world.bodies() {
         let (p, q) = (body.position(), body.quaternion());
         let (v, w) = (body.linear_velocity(), body.angular_velocity());
-        [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z].map(&mut add);
+        let state = [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z];
+        state.into_iter().for_each(&mut add);
     }
     (hash, most)
 }
@@ -87,7 +89,7 @@ fn what_a_callback_changes_is_seen_by_the_islands_after_it() {
         let slow_down = move |_: BodyKey, body: &mut ferrode::Body| {
             counter.fetch_add(1, Ordering::Relaxed);
             let v = body.linear_velocity();
-            body.set_linear_velocity(v * 0.5);
+            body.set_linear_velocity(v * 0.5).unwrap();
         };
         world.body_mut(key).unwrap().set_moved_callback(Some(Arc::new(slow_down)));
         for _ in 0..60 {
