@@ -116,9 +116,17 @@ pub(crate) fn lowest(world: &World) -> f64 {
     dynamic.map(|(_, body)| body.position().z).fold(f64::INFINITY, f64::min)
 }
 
-/// Depth of the deepest contact of the last step, m.
-pub(crate) fn deepest(world: &World) -> f64 {
-    world.contacts().iter().map(|contact| contact.point.depth).fold(0.0, f64::max)
+/// Depth of the deepest contact where bodies are now, m, and the number of contacts. Sleeping bodies have none, so all are woken
+/// in a copy of the world; its step finds contacts before it moves anything.
+pub(crate) fn deepest(world: &World) -> Result<(f64, usize), Failure> {
+    let mut copy = world.clone();
+    let bodies: Vec<BodyKey> = copy.bodies().map(|(key, _)| key).collect();
+    for key in bodies {
+        copy.body_mut(key)?.enable();
+    }
+    copy.step(1e-3)?;
+    let contacts = copy.contacts();
+    Ok((contacts.iter().map(|contact| contact.point.depth).fold(0.0, f64::max), contacts.len()))
 }
 
 /// Lets bodies that stay still sleep.
@@ -153,4 +161,21 @@ pub(crate) fn spring(stiffness: f64, damping: f64, h: f64) -> Result<Softness, F
 /// Sine and cosine of an angle.
 pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     (ferrode_math::real::sin(angle), ferrode_math::real::cos(angle))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{add_ball, at, deepest, ground};
+    use ferrode::Stepper;
+
+    #[test]
+    fn a_ball_that_sleeps_in_the_ground_is_found_there() {
+        let mut world = ground(Stepper::Quick).unwrap();
+        let ball = add_ball(&mut world, 0.2, 500.0, at(0.0, 0.0, 0.18)).unwrap();
+        world.body_mut(ball).unwrap().disable();
+        world.step(0.01).unwrap();
+        assert!(world.contacts().is_empty());
+        let (depth, contacts) = deepest(&world).unwrap();
+        assert!((depth - 0.02).abs() < 1e-12 && contacts == 1, "{depth} m, {contacts}");
+    }
 }

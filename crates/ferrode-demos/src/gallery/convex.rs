@@ -34,8 +34,10 @@ fn build() -> Result<Play, Failure> {
         }
     }
     Stage::new(world, 0.005, ()).check(|(), world| {
+        let (depth, contacts) = deepest(world)?;
         Ok(Findings::new()
-            .at_most("deepest contact (m)", deepest(world), 5e-3)
+            .at_most("deepest contact (m)", depth, 5e-3)
+            .at_least("contacts", contacts as f64, world.body_count() as f64)
             .at_most("fastest (m/s)", fastest(world), 0.05)
             .at_least("lowest centre (m)", lowest(world), 0.1))
     })

@@ -38,10 +38,12 @@ fn build() -> Result<Play, Failure> {
             let p = place(world, *ring)?;
             aside = aside.max((p.x * p.x + p.y * p.y).sqrt());
         }
+        let (depth, contacts) = deepest(world)?;
         Ok(Findings::new()
             .at_most("a ring's middle from the peg (m)", aside, 0.33)
             .at_most("fastest (m/s)", fastest(world), 0.05)
             .at_least("lowest ring (m)", lowest(world), 0.1)
-            .at_most("deepest contact (m)", deepest(world), 0.01))
+            .at_most("deepest contact (m)", depth, 0.01)
+            .at_least("contacts", contacts as f64, world.body_count() as f64))
     })
 }

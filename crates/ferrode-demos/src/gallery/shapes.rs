@@ -59,9 +59,11 @@ fn build() -> Result<Play, Failure> {
         for (_, body) in world.bodies() {
             out = out.max(body.position().x.abs().max(body.position().y.abs()));
         }
+        let (depth, contacts) = deepest(world)?;
         Ok(Findings::new()
             .at_most("farthest centre (m)", out, TRAY)
-            .at_most("deepest contact (m)", deepest(world), 5e-3)
+            .at_most("deepest contact (m)", depth, 5e-3)
+            .at_least("contacts", contacts as f64, world.body_count() as f64)
             .at_most("fastest (m/s)", fastest(world), 0.05))
     })
 }
