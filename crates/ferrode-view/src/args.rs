@@ -2,6 +2,7 @@
 
 use crate::demo;
 use crate::overlay::Overlays;
+use crate::painter::Coloring;
 use crate::render_command::RenderArgs;
 use crate::setup::Setup;
 use crate::view_point::ViewPoint;
@@ -66,6 +67,15 @@ fn overlay(text: &str) -> Result<usize, String> {
         let names: Vec<&str> = OVERLAYS.iter().map(|(name, _)| *name).collect();
         format!("expected one of {}", names.join(", "))
     })
+}
+
+fn coloring(text: &str) -> Result<Coloring, String> {
+    match text {
+        "bodies" => Ok(Coloring::Bodies),
+        "sleep" => Ok(Coloring::Sleep),
+        "islands" => Ok(Coloring::Islands),
+        _ => Err("expected bodies, sleep or islands".to_owned()),
+    }
 }
 
 fn known_demo(text: &str) -> Result<&'static Demo, String> {
@@ -150,6 +160,10 @@ fn picture_args(command: Command) -> Command {
             .action(ArgAction::Append)
             .value_delimiter(',')
             .value_parser(overlay),
+        )
+        .arg(
+            option("colors", "BY", "Colour by bodies, sleep (who is awake) or islands [default: bodies]")
+                .value_parser(coloring),
         )
 }
 
@@ -272,6 +286,10 @@ fn overlays_of(m: &ArgMatches) -> Overlays {
     overlays
 }
 
+fn coloring_of(m: &ArgMatches) -> Coloring {
+    m.get_one("colors").copied().unwrap_or_default()
+}
+
 fn view_of(m: &ArgMatches, setup: Setup, recording: Option<PathBuf>) -> ViewArgs {
     ViewArgs {
         setup,
@@ -280,6 +298,7 @@ fn view_of(m: &ArgMatches, setup: Setup, recording: Option<PathBuf>) -> ViewArgs
         view: m.get_one("camera").copied().unwrap_or_default(),
         size: m.get_one("size").copied().unwrap_or(SIZE),
         overlays: overlays_of(m),
+        coloring: coloring_of(m),
         paused: m.get_flag("paused"),
         speed: m.get_one("speed").copied().unwrap_or(1.0),
         script: m.get_one::<PathBuf>("script").cloned(),
@@ -300,6 +319,7 @@ fn render_of(m: &ArgMatches, setup: Setup, out: PathBuf) -> RenderArgs {
         view: m.get_one("camera").copied().unwrap_or_default(),
         size: m.get_one("size").copied().unwrap_or(SIZE),
         overlays: overlays_of(m),
+        coloring: coloring_of(m),
         draft: m.get_flag("draft"),
         quiet: m.get_flag("quiet"),
         out,

@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::film::{self, Format};
 use crate::lettering::{self, Lettering};
 use crate::overlay::{self, Overlays, Scale};
-use crate::painter::{Painter, bounds};
+use crate::painter::{Coloring, Painter, bounds};
 use crate::setup::Setup;
 use crate::view_point::ViewPoint;
 use ferrode_demos::Demo;
@@ -39,6 +39,8 @@ pub struct RenderArgs {
     pub size: [u32; 2],
     /// What to show of the engine.
     pub overlays: Overlays,
+    /// What colours tell.
+    pub coloring: Coloring,
     /// As windows draw, for speed.
     pub draft: bool,
     /// No progress bar.
@@ -164,6 +166,7 @@ pub fn render(args: &RenderArgs) -> Result<(), Failure> {
     let mut photographer =
         Photographer::new(&named, args.size, quality, &args.view).map_err(Failure::output)?;
     photographer.overlays = args.overlays;
+    photographer.painter.coloring = args.coloring;
     if args.overlays.joint_forces {
         overlay::record_joint_forces(&mut named.world).map_err(Failure::file)?;
     }

@@ -211,3 +211,29 @@ fn names_and_the_time_are_written_where_they_belong() {
     // 0.000 s is not 0.004 s.
     assert!(differ(&lettered, &later, corner) > 5);
 }
+
+#[test]
+fn pictures_are_coloured_by_what_was_asked_for() {
+    if !has_driver() {
+        return;
+    }
+    let world = written("colors.sdf", CUBE);
+    let middle = |by: &str, time: &str| {
+        let out = scratch(&format!("colors-{by}-{time}.png"));
+        let line = [
+            &[world.as_str(), "-o", out.to_str().unwrap(), "--time", time, "--draft", "--colors", by][..],
+            &["--camera", "0,-6,0.5,0,0,0.5", "--size", "64x48"],
+        ];
+        let done = render(&line.concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        image::open(&out).unwrap().to_rgb8().get_pixel(32, 24).0.map(i32::from)
+    };
+    let [r, g, b] = middle("sleep", "0.02");
+    assert!(r > g + 40 && r > b + 60, "awake is orange: {r} {g} {b}");
+    let [r, g, b] = middle("sleep", "3");
+    assert!(b > r + 15 && (g - r).abs() < 40, "asleep is pale blue: {r} {g} {b}");
+    assert_ne!(middle("bodies", "3"), middle("sleep", "3"));
+    let told = render(&[&world, "-o", "no.png", "--colors", "taste"]);
+    assert_eq!(told.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&told.stderr).contains("bodies, sleep or islands"));
+}

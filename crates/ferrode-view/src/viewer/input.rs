@@ -46,6 +46,11 @@ pub enum Input {
 }
 
 impl Key {
+    /// Whether a key that is held down goes on doing what it does: through time.
+    pub fn repeats(self) -> bool {
+        matches!(self, Self::Left | Self::Right | Self::Char(',' | '.'))
+    }
+
     /// The key of a name, as scripts write it: `space`, `left`, `p`, …
     pub fn named(name: &str) -> Option<Self> {
         Some(match name.to_ascii_lowercase().as_str() {

@@ -12,6 +12,8 @@ pub mod script;
 pub mod series;
 pub mod source;
 mod spawn;
+#[cfg(test)]
+mod tests;
 
 use crate::overlay::{self, Overlays, Scale};
 use crate::painter::{Coloring, Painter, bounds};
@@ -177,7 +179,7 @@ impl Viewer {
     pub fn input(&mut self, input: Input) {
         match input {
             Input::Key(key, true) => {
-                if self.held.insert(key) {
+                if self.held.insert(key) || key.repeats() {
                     self.key(key);
                 }
             }
@@ -204,10 +206,7 @@ impl Viewer {
         match key {
             Key::Space => self.playback.paused = !self.playback.paused,
             Key::Right | Key::Char('.') => self.single_step(),
-            Key::Left | Key::Char(',') => {
-                let back = self.playback.back().map(|_| ());
-                self.tell(back);
-            }
+            Key::Left | Key::Char(',') => self.back(),
             Key::Char('r') => self.reset(),
             Key::Char('[') => self.playback.speed = (self.playback.speed * 0.5).max(1.0 / 64.0),
             Key::Char(']') => self.playback.speed = (self.playback.speed * 2.0).min(16.0),
@@ -254,6 +253,21 @@ impl Viewer {
         self.series.record(&self.playback);
     }
 
+    /// Winds back to the state kept before this one.
+    pub fn back(&mut self) {
+        let done = self.playback.back().map(|_| ());
+        self.tell(done);
+        self.forget();
+    }
+
+    /// Pauses, and goes to a time as nearly as states were kept.
+    pub fn seek(&mut self, time: f64) {
+        self.playback.paused = true;
+        let done = self.playback.seek(time);
+        self.tell(done);
+        self.forget();
+    }
+
     /// Begins anew.
     pub fn reset(&mut self) {
         let done = self.playback.reset();
@@ -276,7 +290,9 @@ impl Viewer {
         let link = self.selected.and_then(|body| self.link_of(body));
         let done = self.playback.set_step_size(h);
         self.tell(done);
+        let (coloring, floor) = (self.painter.coloring, self.painter.floor);
         self.painter = staged(&self.playback.named).0;
+        (self.painter.coloring, self.painter.floor) = (coloring, floor);
         self.selected = link.and_then(|link| self.playback.named.link_body(link));
         self.forget();
     }
@@ -302,6 +318,7 @@ impl Viewer {
     fn drop_body(&mut self, kind: spawn::Kind) {
         let (size, at) = (self.new_size(), self.camera().target);
         if !self.playback.is_recording() {
+            self.playback.depart();
             let done = spawn::drop_body(&mut self.playback.named.world, kind, size, at).map(|_| ());
             self.tell(done);
         }
@@ -311,6 +328,7 @@ impl Viewer {
         let (size, camera) = (self.new_size(), self.camera());
         let along = camera.ray(self.pointer, self.size);
         if !self.playback.is_recording() {
+            self.playback.depart();
             let done = spawn::shoot(&mut self.playback.named.world, size, &camera, along).map(|_| ());
             self.tell(done);
         }

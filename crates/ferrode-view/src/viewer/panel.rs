@@ -72,8 +72,7 @@ impl Viewer {
                 self.single_step();
             }
             if ui.button("back").clicked() {
-                let back = self.playback.back().map(|_| ());
-                self.tell(back);
+                self.back();
             }
             if ui.button("reset").clicked() {
                 self.reset();
@@ -82,9 +81,7 @@ impl Viewer {
         let [from, to] = self.playback.range();
         let mut time = self.playback.time();
         if to > from && ui.add(egui::Slider::new(&mut time, from..=to).text("time [s]")).changed() {
-            self.playback.paused = true;
-            let done = self.playback.seek(time);
-            self.tell(done);
+            self.seek(time);
         }
         ui.add(
             egui::Slider::new(&mut self.playback.speed, 1.0 / 64.0..=16.0).logarithmic(true).text("speed"),

@@ -51,7 +51,10 @@ pub struct Playback {
     setup: Setup,
     start: Moment,
     recording: Option<Recording>,
+    /// States before this one, oldest first.
     history: VecDeque<Moment>,
+    /// States after this one, which was wound back to: the nearest last. Time that runs makes others.
+    ahead: Vec<Moment>,
     /// Seconds that are to be simulated yet.
     due: f64,
     /// Simulated before the world was built anew with another step size, s.
@@ -86,6 +89,7 @@ impl Playback {
             setup,
             recording: None,
             history: VecDeque::new(),
+            ahead: Vec::new(),
             due: 0.0,
             earlier: 0.0,
             kept: f64::NEG_INFINITY,
@@ -122,12 +126,11 @@ impl Playback {
 
     /// First and last time of a recording, or of what is kept.
     pub fn range(&self) -> [f64; 2] {
-        match &self.recording {
-            Some(recording) => recording.range(),
-            None => {
-                [self.history.front().map_or(self.time(), |m| self.earlier + m.0.world.time()), self.time()]
-            }
+        if let Some(recording) = &self.recording {
+            return recording.range();
         }
+        let time = |moment: Option<&Moment>| moment.map_or(self.time(), |m| self.earlier + m.0.world.time());
+        [time(self.history.front()), time(self.ahead.first())]
     }
 
     /// Lets wall time pass: makes the steps that fall into it, but for no longer than `most`. `before` is called before each.
@@ -200,7 +203,13 @@ impl Playback {
         Ok(())
     }
 
+    /// The world is about to be changed: what came after this moment does not hold any more.
+    pub fn depart(&mut self) {
+        self.ahead.clear();
+    }
+
     fn keep(&mut self) {
+        self.depart();
         let time = self.named.world.time();
         if time < self.kept + KEEP_EVERY {
             return;
@@ -223,16 +232,10 @@ impl Playback {
             recording.previous();
             return self.show_recorded().map(|()| true);
         }
-        while let Some(state) = self.history.pop_back() {
-            if state.0.world.time() < self.named.world.time() {
-                self.take(state);
-                return Ok(true);
-            }
-        }
-        Ok(false)
+        Ok(self.one_back())
     }
 
-    /// Goes back to a time as nearly as states were kept; in a recording, to any time.
+    /// Goes to a time as nearly as states were kept, back or forth; in a recording, to any time.
     ///
     /// # Errors
     /// The engine refuses a recorded pose.
@@ -241,19 +244,33 @@ impl Playback {
             recording.seek(time);
             return self.show_recorded();
         }
-        while let Some(state) = self.history.pop_back() {
-            if self.earlier + state.0.world.time() <= time || self.history.is_empty() {
-                self.take(state);
-                break;
-            }
+        while self.time() > time && self.one_back() {}
+        while self.ahead.last().is_some_and(|next| self.earlier + next.0.world.time() <= time) {
+            let Some(next) = self.ahead.pop() else { break };
+            let left = self.take(next);
+            self.history.push_back(left);
         }
         Ok(())
     }
 
-    fn take(&mut self, (named, direction): Moment) {
-        self.kept = named.world.time();
-        (self.named, self.direction) = (named, direction);
-        self.due = 0.0;
+    /// To the state kept before this one, if there is one.
+    fn one_back(&mut self) -> bool {
+        while let Some(state) = self.history.pop_back() {
+            if state.0.world.time() < self.named.world.time() {
+                let left = self.take(state);
+                self.ahead.push(left);
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Shows a state, and gives the one that was shown. The stepper stays the one that was chosen.
+    fn take(&mut self, (mut named, direction): Moment) -> Moment {
+        named.world.stepper = self.named.world.stepper;
+        // Time that runs on from here keeps this state again.
+        (self.due, self.kept) = (0.0, f64::NEG_INFINITY);
+        (std::mem::replace(&mut self.named, named), std::mem::replace(&mut self.direction, direction))
     }
 
     /// Begins anew.
@@ -267,6 +284,7 @@ impl Playback {
             return self.show_recorded();
         }
         self.history.clear();
+        self.depart();
         let stepper = self.named.world.stepper;
         (self.named, self.direction) = self.start.clone();
         self.named.world.stepper = stepper;
@@ -308,6 +326,7 @@ impl Playback {
         }
         rebuilt.world.stepper = stepper;
         self.history.clear();
+        self.depart();
         (self.earlier, self.kept, self.due) = (time, f64::NEG_INFINITY, 0.0);
         self.named = rebuilt;
         Ok(())

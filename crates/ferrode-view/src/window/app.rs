@@ -294,7 +294,8 @@ impl ApplicationHandler for App {
             _ if scripted => {}
             WindowEvent::Focused(false) => self.viewer.release_all(),
             WindowEvent::KeyboardInput { event, .. } if !writing || !event.state.is_pressed() => {
-                if let Some(key) = keys::key(event.physical_key).filter(|_| !event.repeat) {
+                if let Some(key) = keys::key(event.physical_key).filter(|key| !event.repeat || key.repeats())
+                {
                     self.hand(Input::Key(key, event.state.is_pressed()));
                 }
             }

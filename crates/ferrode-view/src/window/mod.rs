@@ -8,6 +8,7 @@ mod meter;
 use crate::demo;
 use crate::failure::Failure;
 use crate::overlay::Overlays;
+use crate::painter::Coloring;
 use crate::setup::Setup;
 use crate::view_point::ViewPoint;
 use crate::viewer::Viewer;
@@ -34,6 +35,8 @@ pub struct ViewArgs {
     pub size: [u32; 2],
     /// What to show of the engine.
     pub overlays: Overlays,
+    /// What colours tell.
+    pub coloring: Coloring,
     /// Begin paused.
     pub paused: bool,
     /// Slower (below 1) or faster than time.
@@ -61,6 +64,7 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     });
     let script = script.transpose().map_err(Failure::file)?;
     let mut viewer = Viewer::new(playback, args.size, &args.view, args.overlays);
+    viewer.painter.coloring = args.coloring;
     for value in &args.plots {
         viewer.plot_named(value).map_err(Failure::usage)?;
     }
@@ -78,6 +82,7 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
 fn no_display(args: &ViewArgs) -> String {
     let (picture, window) = match args.demo {
         Some(demo) => (format!("demo {}", demo.name), format!("demo {}", demo.name)),
+        None if args.recording.is_some() => ("render FILE".to_owned(), "replay RECORDING".to_owned()),
         None => ("render FILE".to_owned(), "view FILE".to_owned()),
     };
     format!(
