@@ -12,21 +12,23 @@ shift || true
 folder=$(mktemp -d)
 trap 'kill "${server:-}" 2>/dev/null || true; rm -rf "$folder"' EXIT
 
-# Boxes of two sizes in a spiral above the pit; its walls keep them in, restitution and low gravity keep them moving.
+# Boxes of two sizes in a spiral above the pit; its walls keep nearly all in. Nothing rubs, every bounce gives back what it took, so that
+# all go on moving.
 awk 'BEGIN {
   print "<sdf version=\"1.10\"><world name=\"pit\"><gravity>0 0 -2</gravity>"
   print "<physics type=\"ode\"><max_step_size>0.01</max_step_size><ode><solver><type>quick</type></solver></ode></physics>"
   print "<model name=\"pit\"><static>true</static><link name=\"l\">"
-  surface = "<surface><bounce><restitution_coefficient>0.9</restitution_coefficient><threshold>0.1</threshold></bounce></surface>"
+  surface = "<surface><friction><ode><mu>0</mu><mu2>0</mu2></ode></friction>"
+  surface = surface "<bounce><restitution_coefficient>1</restitution_coefficient><threshold>0.01</threshold></bounce></surface>"
   print "<collision name=\"floor\"><geometry><plane><normal>0 0 1</normal></plane></geometry>" surface "</collision>"
   for (i = 0; i < 4; i++) {
     x = (i == 0) * 3.1 - (i == 1) * 3.1; y = (i == 2) * 3.1 - (i == 3) * 3.1
-    sides = i < 2 ? "0.2 6.4 1" : "6.4 0.2 1"
-    printf "<collision name=\"wall%d\"><pose>%g %g 0.5 0 0 0</pose><geometry><box><size>%s</size></box></geometry>%s</collision>\n", i, x, y, sides, surface
+    sides = i < 2 ? "0.2 6.4 2" : "6.4 0.2 2"
+    printf "<collision name=\"wall%d\"><pose>%g %g 1 0 0 0</pose><geometry><box><size>%s</size></box></geometry>%s</collision>\n", i, x, y, sides, surface
   }
   print "</link></model>"
   for (n = 0; n < 300; n++) {
-    a = n * 2.399963; r = 2.6 * sqrt((n % 50 + 0.5) / 50); z = 0.5 + 0.9 * int(n / 50)
+    a = n * 2.399963; r = 2.6 * sqrt((n % 50 + 0.5) / 50); z = 0.4 + 0.45 * int(n / 50)
     s = n % 3 ? 0.3 : 0.4
     printf "<model name=\"b%d\"><pose>%g %g %g %g %g 0</pose><link name=\"l\"><inertial auto=\"true\"><density>300</density></inertial>", n, r * cos(a), r * sin(a), z, n * 0.7, n * 1.3
     printf "<collision name=\"c\"><geometry><box><size>%g %g %g</size></box></geometry>%s</collision></link></model>\n", s, s, s, surface
@@ -39,5 +41,5 @@ server=$!
 until [ -s "$folder/display" ]; do sleep 0.1; kill -0 "$server"; done
 used() { awk '{ sub(/.*\) /, ""); print $12 + $13 }' "/proc/$server/stat"; }
 before=$(used)
-DISPLAY=:$(cat "$folder/display") "$viewer" view "$folder/pit.sdf" --size 1280x720 --frames "$frames" "$@"
+DISPLAY=:$(cat "$folder/display") "$viewer" view "$folder/pit.sdf" --size 1280x720 --camera -58,38 --frames "$frames" "$@"
 echo "display server: $(awk "BEGIN { printf \"%.2f\", ($(used) - $before) * 10 / ($frames + 10) }") processor ms a frame; load: $(cut -d' ' -f1-3 /proc/loadavg)"
