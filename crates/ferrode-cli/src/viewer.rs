@@ -14,7 +14,13 @@ const NAME: &str = "ferrode-view";
 /// [`Exit::Usage`] if it is not installed; the viewer's own exit code if it fails, which has told why.
 pub fn start<'a>(arguments: impl IntoIterator<Item = &'a OsStr>) -> Result<(), Failure> {
     let arguments: Vec<&OsStr> = arguments.into_iter().collect();
-    let status = match Command::new(program()).args(&arguments).status() {
+    let mut command = Command::new(program());
+    command.args(&arguments);
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // Without it, as on servers, Mesa's layer that puts devices in order looks for Wayland and prints errors that are none.
+        command.env("NODEVICE_SELECT", "1");
+    }
+    let status = match command.status() {
         Ok(status) => status,
         Err(error) if error.kind() == ErrorKind::NotFound => {
             let without = match arguments[..] {

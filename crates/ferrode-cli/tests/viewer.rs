@@ -45,4 +45,14 @@ fn the_viewer_beside_the_command_gets_all_arguments_and_its_code_is_handed_back(
     let done = Command::new(&ferrode).args(line).output().unwrap();
     let want: String = line.iter().map(|argument| format!("[{argument}]")).collect();
     assert_eq!((String::from_utf8(done.stdout).unwrap(), done.status.code()), (want, Some(4)));
+
+    // On servers, Mesa is kept from complaining of a Wayland that is not there.
+    std::fs::write(&viewer, "#!/bin/sh\necho \"<$NODEVICE_SELECT>\"\n").unwrap();
+    let told = |folder: Option<&str>| {
+        let mut command = Command::new(&ferrode);
+        command.args(["view", "a.sdf"]).env_remove("NODEVICE_SELECT").env_remove("XDG_RUNTIME_DIR");
+        command.envs(folder.map(|folder| ("XDG_RUNTIME_DIR", folder)));
+        String::from_utf8(command.output().unwrap().stdout).unwrap()
+    };
+    assert_eq!((told(None), told(Some("/tmp"))), ("<1>\n".to_owned(), "<>\n".to_owned()));
 }

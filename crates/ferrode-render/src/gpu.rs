@@ -54,9 +54,14 @@ impl Gpu {
             let display = Box::new(display.clone());
             let descriptor = wgpu::InstanceDescriptor::new_with_display_handle_from_env(display);
             let instance = wgpu::Instance::new(narrowed(descriptor, backends));
-            let surface = instance
-                .create_surface(window.clone())
-                .map_err(|error| RenderError::Surface(error.to_string()))?;
+            let surface = match instance.create_surface(window.clone()) {
+                Ok(surface) => surface,
+                // Without any driver there is no surface either: that is what the user can help.
+                Err(error) => match Self::open(instance, None) {
+                    Err(missing @ RenderError::NoDriver(_)) => return Err(missing),
+                    _ => return Err(RenderError::Surface(error.to_string())),
+                },
+            };
             let gpu = Self::open(instance, Some(&surface))?;
             Ok((gpu, surface))
         })

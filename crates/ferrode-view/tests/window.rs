@@ -29,6 +29,19 @@ fn pixel(p: Vec3) -> String {
     format!("{x:.1} {y:.1}")
 }
 
+#[test]
+fn a_missing_driver_is_told_in_a_line_though_there_is_a_display() {
+    let Some(display) = Display::open("driverless", SIZE) else { return };
+    let world = written("driverless.sdf", CUBE);
+    // Metal is not to be had here.
+    let mut command = viewer();
+    command.args(["view", &world]).env("DISPLAY", &display.name).env("WGPU_BACKEND", "metal");
+    let done = command.output().unwrap();
+    let told = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code(), Some(4), "{told}");
+    assert!(told.contains("apt install mesa-vulkan-drivers") && told.trim().lines().count() == 1, "{told}");
+}
+
 /// Runs a script on a world to its end; `{name}` in it are files of the test's own. Gives their paths.
 fn run(display: &Display, test: &str, line: &[&str], script: &str) -> impl Fn(&str) -> PathBuf + use<> {
     let prefix = test.to_owned();

@@ -72,6 +72,8 @@ pub struct Viewer {
     shots: usize,
     frame_rate: f64,
     panel_area: Option<egui::Rect>,
+    /// Columns that the panel covers if it is shown.
+    covered: f64,
 }
 
 /// A button that is down.
@@ -90,7 +92,8 @@ impl Viewer {
     /// A viewer for a window of a size.
     pub fn new(playback: Playback, size: [u32; 2], view: &ViewPoint, overlays: Overlays) -> Self {
         let (painter, around) = staged(&playback.named);
-        let camera = view.camera(&around, f64::from(size[0]) / f64::from(size[1].max(1)));
+        let covered = panel::WIDTH.min(0.5 * f64::from(size[0]));
+        let camera = view.camera(&around, (f64::from(size[0]) - covered) / f64::from(size[1].max(1)));
         let scale = Scale::of(&playback.named.world);
         let mut viewer = Self {
             playback,
@@ -113,6 +116,7 @@ impl Viewer {
             shots: 0,
             frame_rate: 0.0,
             panel_area: None,
+            covered,
         };
         viewer.prepare();
         viewer
@@ -125,9 +129,14 @@ impl Viewer {
         }
     }
 
-    /// The camera.
+    /// The camera. What it turns about is in the middle of what the panel leaves free.
     pub fn camera(&self) -> Camera {
-        self.orbit.camera()
+        self.orbit.camera_beside(self.covered(), f64::from(self.size[1]))
+    }
+
+    /// Columns that the panel covers now, never more than half of them.
+    fn covered(&self) -> f64 {
+        if self.panel { self.covered.min(0.5 * f64::from(self.size[0])) } else { 0.0 }
     }
 
     /// Width and height in pixels.
@@ -306,7 +315,7 @@ impl Viewer {
 
     fn see_everything(&mut self) {
         self.around = bounds(&self.playback.named.world).unwrap_or(self.around);
-        let aspect = f64::from(self.size[0]) / f64::from(self.size[1].max(1));
+        let aspect = (f64::from(self.size[0]) - self.covered()) / f64::from(self.size[1].max(1));
         self.orbit.frame(&self.around, aspect);
     }
 
@@ -316,7 +325,7 @@ impl Viewer {
     }
 
     fn drop_body(&mut self, kind: spawn::Kind) {
-        let (size, at) = (self.new_size(), self.camera().target);
+        let (size, at) = (self.new_size(), self.orbit.target());
         if !self.playback.is_recording() {
             self.playback.depart();
             let done = spawn::drop_body(&mut self.playback.named.world, kind, size, at).map(|_| ());
@@ -361,12 +370,14 @@ impl Viewer {
         self.pointer = to;
         let Some(press) = &mut self.pressed else { return };
         press.moved |= (to[0] - press.at[0]).abs().max((to[1] - press.at[1]).abs()) > TREMBLE;
+        let press = *press;
         if !press.moved {
             return;
         }
-        let along = self.orbit.camera().ray(to, self.size);
+        let camera = self.camera();
+        let along = camera.ray(to, self.size);
         match (press.button, &mut self.grab) {
-            (Button::Left, Some(grab)) => grab.follow(&self.orbit.camera(), along),
+            (Button::Left, Some(grab)) => grab.follow(&camera, along),
             (Button::Left | Button::Right, _) => self.orbit.turn(dx, dy),
             (Button::Middle, _) => self.orbit.pan(dx, dy, f64::from(self.size[1])),
         }

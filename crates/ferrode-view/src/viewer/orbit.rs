@@ -38,6 +38,22 @@ impl Orbit {
         Camera::orbit(self.target, self.distance, self.heading, self.pitch)
     }
 
+    /// The camera, moved aside so that the target is in the middle of a picture whose last columns, `covered` pixels of them, are
+    /// behind something else; `height` is that of the picture in pixels.
+    pub fn camera_beside(&self, covered: f64, height: f64) -> Camera {
+        let mut camera = self.camera();
+        let aside = camera.directions()[0] * (0.5 * covered * self.metres_a_pixel(height));
+        camera.eye += aside;
+        camera.target += aside;
+        camera
+    }
+
+    /// Metres at the target's depth a pixel of a picture of a height.
+    fn metres_a_pixel(&self, height: f64) -> f64 {
+        let tall = ferrode_math::real::tan(0.5 * self.camera().field_of_view);
+        2.0 * self.distance * tall / height.max(1.0)
+    }
+
     /// Turns about the target by a move of the mouse in pixels.
     pub fn turn(&mut self, dx: f64, dy: f64) {
         self.heading -= dx * TURN;
@@ -46,11 +62,8 @@ impl Orbit {
 
     /// Moves sideways and up with the mouse, so that the target stays under it; `height` is that of the picture in pixels.
     pub fn pan(&mut self, dx: f64, dy: f64, height: f64) {
-        let camera = self.camera();
-        let [right, up, _] = camera.directions();
-        let scale =
-            2.0 * self.distance * ferrode_math::real::tan(0.5 * camera.field_of_view) / height.max(1.0);
-        self.target += (up * dy - right * dx) * scale;
+        let [right, up, _] = self.camera().directions();
+        self.target += (up * dy - right * dx) * self.metres_a_pixel(height);
     }
 
     /// Goes nearer (positive) or farther.
@@ -62,6 +75,11 @@ impl Orbit {
     pub fn fly(&mut self, [x, y, z]: [f64; 3], seconds: f64) {
         let [right, _, forward] = self.camera().directions();
         self.target += (right * x + Vec3::Z * y + forward * z) * (self.distance * seconds);
+    }
+
+    /// The point that it turns about.
+    pub fn target(&self) -> Vec3 {
+        self.target
     }
 
     /// Looks at another point.
@@ -92,5 +110,13 @@ mod tests {
         orbit.pan(30.0, -20.0, 600.0);
         let (after, _) = orbit.camera().project(point, [800, 600]).unwrap();
         assert!((after[0] - before[0] - 30.0).abs() < 1e-6 && (after[1] - before[1] + 20.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn beside_a_panel_the_target_is_in_the_middle_of_the_rest() {
+        let camera = Camera::look_at(Vec3::new(3.0, -2.0, 1.5), Vec3::new(0.2, 0.1, 0.3));
+        let orbit = Orbit::from_camera(&camera);
+        let (at, _) = orbit.camera_beside(200.0, 600.0).project(orbit.target(), [800, 600]).unwrap();
+        assert!((at[0] - 300.0).abs() < 1e-6 && (at[1] - 300.0).abs() < 1e-6, "{at:?}");
     }
 }

@@ -11,6 +11,9 @@ use ferrode::Stepper;
 const STEPPERS: [(Stepper, &str); 3] =
     [(Stepper::Direct, "direct"), (Stepper::Quick, "quick"), (Stepper::Substep, "substep")];
 
+/// How wide the panel is at first, in points.
+pub(super) const WIDTH: f64 = 290.0;
+
 impl Viewer {
     /// Shows the user interface.
     pub fn interface(&mut self, ui: &mut egui::Ui) {
@@ -22,10 +25,13 @@ impl Viewer {
             lettering::paint(ui.ctx(), &labels);
         }
         if self.panel {
-            let shown = egui::Panel::right("panel").resizable(true).default_size(290.0).show(ui, |ui| {
-                egui::ScrollArea::vertical().show(ui, |ui| self.sections(ui));
-            });
-            self.panel_area = Some(shown.response.rect);
+            let shown =
+                egui::Panel::right("panel").resizable(true).default_size(WIDTH as f32).show(ui, |ui| {
+                    egui::ScrollArea::vertical().show(ui, |ui| self.sections(ui));
+                });
+            let area = shown.response.rect;
+            self.panel_area = Some(area);
+            self.covered = f64::from(area.width() * ui.ctx().pixels_per_point());
         }
         egui::Area::new(egui::Id::unique("status")).fixed_pos([10.0, 8.0]).interactable(false).show(
             ui.ctx(),
