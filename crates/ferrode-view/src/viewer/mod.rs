@@ -139,6 +139,12 @@ impl Viewer {
         if self.panel { self.covered.min(0.5 * f64::from(self.size[0])) } else { 0.0 }
     }
 
+    /// Goes so far back that what the whole picture would show is seen beside the panel.
+    pub fn make_room(&mut self) {
+        let width = f64::from(self.size[0]);
+        self.orbit.back_off(width / (width - self.covered()));
+    }
+
     /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size

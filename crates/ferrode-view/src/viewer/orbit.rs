@@ -71,6 +71,11 @@ impl Orbit {
         self.distance = (self.distance * ferrode_math::real::exp(-0.12 * notches)).clamp(0.01, 1e5);
     }
 
+    /// Goes farther by a factor.
+    pub fn back_off(&mut self, factor: f64) {
+        self.distance *= factor;
+    }
+
     /// Flies: to the right, up and forward, in distances to the target a second.
     pub fn fly(&mut self, [x, y, z]: [f64; 3], seconds: f64) {
         let [right, _, forward] = self.camera().directions();

@@ -8,6 +8,7 @@ use crate::painter::Coloring;
 use crate::setup::Setup;
 use crate::view_point::ViewPoint;
 use ferrode::{Stepper, Vec3};
+use ferrode_render::Camera;
 use ferrode_scene::description::LinkId;
 use ferrode_scene::{BuildOptions, LoadOptions, build, load_str};
 use std::time::Duration;
@@ -23,10 +24,14 @@ const BALL: &str = r#"<sdf version="1.10"><world name="w">
 </world></sdf>"#;
 
 fn viewer() -> Viewer {
+    seen([320, 200], &ViewPoint::default())
+}
+
+fn seen(size: [u32; 2], view: &ViewPoint) -> Viewer {
     let loaded = load_str("ball", BALL, &LoadOptions::default()).unwrap();
     let named = build(&loaded.scene, &BuildOptions::default()).unwrap();
     let playback = Playback::new(Setup::default(), named);
-    Viewer::new(playback, [320, 200], &ViewPoint::default(), Overlays::default())
+    Viewer::new(playback, size, view, Overlays::default())
 }
 
 fn run(viewer: &mut Viewer, frames: usize) {
@@ -126,4 +131,25 @@ fn what_was_chosen_stays_when_time_or_step_size_change() {
     assert!((viewer.playback.time() - time).abs() < 1e-12 && (ball(&viewer) - place).length() < 1e-12);
     viewer.reset();
     assert_eq!((viewer.playback.stepper(), viewer.playback.time()), (Stepper::Direct, 0.0));
+}
+
+#[test]
+fn what_a_picture_shows_fits_beside_the_panel() {
+    let (eye, target) = (Vec3::new(0.0, -7.0, 2.0), Vec3::new(0.0, 0.0, 0.7));
+    let mut viewer = seen([800, 600], &ViewPoint::LookAt { eye, target });
+    let camera = Camera::look_at(eye, target);
+    let edges = [[0.0, 300.0], [800.0, 300.0]].map(|pixel| {
+        let along = camera.ray(pixel, [800, 600]);
+        eye + along * ((target - eye).dot(camera.directions()[2]) / along.dot(camera.directions()[2]))
+    });
+    viewer.make_room();
+    let across = |viewer: &Viewer| edges.map(|p| viewer.camera().project(p, [800, 600]).unwrap().0[0]);
+    let [left, right] = across(&viewer);
+    assert!(left.abs() < 1e-6 && (right - 510.0).abs() < 1e-6, "{left} {right}");
+    viewer.input(Input::Key(Key::Tab, true));
+    let [left, right] = across(&viewer);
+    assert!(
+        (left - 145.0).abs() < 1e-6 && (right - 655.0).abs() < 1e-6,
+        "without it, in the middle: {left} {right}"
+    );
 }

@@ -65,6 +65,10 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
     let script = script.transpose().map_err(Failure::file)?;
     let mut viewer = Viewer::new(playback, args.size, &args.view, args.overlays);
     viewer.painter.coloring = args.coloring;
+    if args.demo.is_some_and(|demo| args.view == demo::view_point(demo)) {
+        // The demo's camera is that of its picture, which has no panel.
+        viewer.make_room();
+    }
     for value in &args.plots {
         viewer.plot_named(value).map_err(Failure::usage)?;
     }
