@@ -326,7 +326,7 @@ pub fn command() -> Command {
                 .value_name("N")
                 .value_parser(value_parser!(u16))
                 .default_value("1")
-                .help("Threads for the stepper substep, 0 for all of the machine's; results are the same"),
+                .help("Threads for the steppers substep and direct, 0 for all of the machine's; results are the same"),
         )
         .arg(
             Arg::new("project")
