@@ -238,11 +238,12 @@ pub(crate) fn sub_aat<Q: Quad, const R: usize, const D: usize>(t: &mut [f64], a:
 pub(crate) fn cholesky<Q: Quad, const N: usize>(h: &mut [f64], inverse: &mut [f64], sign: f64) -> u32 {
     let s = stride(N);
     let (h, inverse) = (&mut h[..s * N], &mut inverse[..s * N]);
-    let mut replaced = 0;
+    // First h = V D^-1 V^T, V = L D^1/2: a column then waits for one division of the column before, and not for a root as well.
+    let (mut replaced, mut pivots, mut over) = (0, [0.0; N], [0.0; N]);
     for c in 0..N {
         let mut column = Column::<Q, N>::load(&h[s * c..]).times(sign);
         for q in 0..c {
-            column = column.minus(h[s * q + c], Column::load(&h[s * q..]));
+            column = column.minus(h[s * q + c] * over[q], Column::load(&h[s * q..]));
         }
         column.store(&mut h[s * c..]);
         let mut pivot = h[s * c + c];
@@ -251,9 +252,12 @@ pub(crate) fn cholesky<Q: Quad, const N: usize>(h: &mut [f64], inverse: &mut [f6
             pivot = 1.0;
             replaced += 1;
         }
-        let root = pivot.sqrt();
-        let inv = 1.0 / root;
-        column.times(inv).store(&mut h[s * c..]);
+        (pivots[c], over[c]) = (pivot, 1.0 / pivot);
+    }
+    for c in 0..N {
+        let root = pivots[c].sqrt();
+        let inv = root * over[c];
+        Column::<Q, N>::load(&h[s * c..]).times(inv).store(&mut h[s * c..]);
         h[s * c + c] = root;
         // Row c of the inverse, from the rows before it.
         let mut row = Column::<Q, N>::zero();

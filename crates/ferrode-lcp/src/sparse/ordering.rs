@@ -1,4 +1,6 @@
-//! The order of elimination: always an unknown with the fewest neighbours, of equals the one that comes first.
+//! The order of elimination: always an unknown with the fewest neighbours, of equals the one that comes first. Of those with one neighbour, as
+//! in trees, it is the one that has had no more for longest: so a chain is eliminated from both ends in turns, and a robot from all limbs.
+//! Columns next to each other don't depend on each other then, and a processor works on both at once.
 //!
 //! Eliminating an unknown joins all its neighbours to each other. Its neighbours at that moment are the rows of its column in the
 //! factor, so playing the elimination through gives the order and the shape of the factor at once. In a tree some unknown always
@@ -35,8 +37,8 @@ pub struct Elimination {
     /// Neighbours not yet eliminated, ascending.
     neighbours: Vec<Vec<u32>>,
     merged: Vec<u32>,
-    /// Unknowns by size of their neighbours and number; entries whose size is out of date are skipped.
-    queue: BinaryHeap<Reverse<(u32, u32)>>,
+    /// Unknowns by size of their neighbours, since when if there is one neighbour, and number; entries whose size is out of date are skipped.
+    queue: BinaryHeap<Reverse<(u32, u32, u32)>>,
     degree: Vec<u32>,
     state: Vec<State>,
 }
@@ -70,15 +72,17 @@ impl Elimination {
             self.degree.push(size(&self.neighbours[i]));
             self.state.push(if node.waits() { State::Waiting } else { State::Ready });
             if !node.waits() {
-                self.queue.push(Reverse((self.degree[i], i as u32)));
+                self.queue.push(Reverse((self.degree[i], 0, i as u32)));
             }
         }
-        while let Some(Reverse((degree, node))) = self.queue.pop() {
+        let mut time = 0;
+        while let Some(Reverse((degree, _, node))) = self.queue.pop() {
             let v = node as usize;
             if self.state[v] == State::Eliminated || self.degree[v] != degree {
                 continue;
             }
             self.state[v] = State::Eliminated;
+            time += 1;
             let clique = core::mem::take(&mut self.neighbours[v]);
             column(node, &clique);
             for u in clique.iter().map(|u| *u as usize) {
@@ -90,7 +94,9 @@ impl Elimination {
                     self.state[u] = State::Ready;
                 }
                 if self.state[u] == State::Ready && (freed || is != self.degree[u]) {
-                    self.queue.push(Reverse((is, u as u32)));
+                    // Of meshes, whose unknowns have many neighbours, the number does as well, with a little less fill.
+                    let since = if self.neighbours[u].len() == 1 { time } else { 0 };
+                    self.queue.push(Reverse((is, since, u as u32)));
                 }
                 self.degree[u] = is;
             }
@@ -136,6 +142,12 @@ mod tests {
         let mut sorted = order.clone();
         sorted.sort_unstable();
         assert_eq!(sorted, (0..40).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_chain_is_eliminated_from_both_ends_in_turns() {
+        let edges: Vec<[u32; 2]> = (1..7).map(|i| [i - 1, i]).collect();
+        assert_eq!(fill(7, &edges), (vec![0, 6, 1, 5, 2, 4, 3], 6));
     }
 
     #[test]
