@@ -76,7 +76,7 @@ impl Body {
 
 impl World {
     /// As [`World::step_with_random`]; `moved` is called for every body that was moved, where its moved callback is. It
-    /// may change the world in any way.
+    /// may change the world in any way, unless it is said that it `looks_only`.
     ///
     /// # Errors
     /// As [`World::step`].
@@ -86,10 +86,11 @@ impl World {
         stepper: Stepper,
         h: f64,
         random: &mut OdeRandom,
-        moved: MovedObserver<'_>,
+        (moved, looks_only): (MovedObserver<'_>, bool),
     ) -> Result<StepReport, Error> {
         let mut report = StepReport::default();
-        self.step_in_full(stepper, h, random, Some(moved), &mut report)?;
+        let moved = crate::step::Moved { observer: Some(moved), looks_only };
+        self.step_in_full(stepper, h, random, moved, &mut report)?;
         Ok(report)
     }
 

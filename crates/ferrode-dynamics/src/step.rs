@@ -3,6 +3,7 @@
 mod fast;
 mod impacts;
 mod project;
+mod quick_islands;
 
 use crate::body::{Body, BodyKey};
 use crate::ends::{Ends, Frame, StepContext};
@@ -11,7 +12,7 @@ use crate::island::Islands;
 use crate::joint::Joint;
 use crate::rows::{JointRows, Row, RowCount, Wrench};
 use crate::solve::direct::{self, ImpactLaw, IslandWork};
-use crate::solve::{quick, substep};
+use crate::solve::substep;
 use crate::timing::Phase;
 use crate::{Error, StepReport, World, gyroscopic, integrate};
 use ferrode_math::random::OdeRandom;
@@ -34,6 +35,18 @@ pub enum Stepper {
     Quick,
     /// Thousands of bodies in real time: soft constraints, substeps, SIMD lanes, warm starts (the manual's "StepFast").
     Substep,
+}
+
+/// Who is told of bodies that a step moves.
+pub(crate) struct Moved<'a> {
+    pub observer: Option<MovedObserver<'a>>,
+    /// It leaves the world as it is, so that islands may be stepped side by side.
+    pub looks_only: bool,
+}
+
+impl Moved<'_> {
+    /// Nobody is told.
+    const UNSEEN: Self = Self { observer: None, looks_only: true };
 }
 
 /// A body as the solvers see it: in a dense array, in the order of its island.
@@ -96,7 +109,7 @@ struct Stepping {
     /// At least one.
     works: Vec<IslandWork>,
     direct: direct::Workspace,
-    quick: quick::Workspace,
+    quick: quick_islands::Workspace,
     fast: fast::Workspace,
     impacts: impacts::Workspace,
     /// The island once more, with the bodies where the step has brought them.
@@ -142,7 +155,7 @@ impl World {
     /// As [`World::step`]; the report is left as it was then.
     pub fn step_into(&mut self, stepper: Stepper, h: f64, report: &mut StepReport) -> Result<(), Error> {
         let mut random = self.random;
-        let done = self.step_in_full(stepper, h, &mut random, None, report);
+        let done = self.step_in_full(stepper, h, &mut random, Moved::UNSEEN, report);
         self.random = random;
         done
     }
@@ -158,7 +171,7 @@ impl World {
         random: &mut OdeRandom,
     ) -> Result<StepReport, Error> {
         let mut report = StepReport::default();
-        self.step_in_full(stepper, h, random, None, &mut report)?;
+        self.step_in_full(stepper, h, random, Moved::UNSEEN, &mut report)?;
         Ok(report)
     }
 
@@ -167,11 +180,11 @@ impl World {
         stepper: Stepper,
         h: f64,
         random: &mut OdeRandom,
-        mut moved: Option<MovedObserver<'_>>,
+        moved: Moved<'_>,
         report: &mut StepReport,
     ) -> Result<(), Error> {
         if stepper == Stepper::Substep {
-            *report = self.step_substep(h, (&mut [], None), &[], moved)?;
+            *report = self.step_substep(h, (&mut [], None), &[], moved.observer)?;
             return Ok(());
         }
         crate::softness::step_size(h)?;
@@ -179,16 +192,35 @@ impl World {
         report.clear();
         self.timing.begin();
         let mut stepping = self.scratch.stepping.take().unwrap_or_default();
-        let Stepping { islands, works, moved_island, direct, quick, impacts, .. } = &mut *stepping;
-
         self.quarantine_unusable_bodies(report);
         self.auto_disable_bodies(h);
-        self.find_islands(islands);
+        self.find_islands(&mut stepping.islands);
+        match stepper {
+            Stepper::Direct => self.step_direct(h, &mut stepping, moved.observer, report),
+            _ => {
+                // What `Direct` keeps from step to step grows old meanwhile.
+                direct::begin_step(&mut stepping.direct);
+                self.step_quick(h, random, &mut stepping, moved, report);
+                direct::end_step(&mut stepping.direct);
+            }
+        }
+        self.scratch.stepping = Some(stepping);
+        Ok(())
+    }
+
+    /// Steps all islands exactly.
+    fn step_direct(
+        &mut self,
+        h: f64,
+        stepping: &mut Stepping,
+        mut moved: Option<MovedObserver<'_>>,
+        report: &mut StepReport,
+    ) {
+        let Stepping { islands, works, moved_island, direct, impacts, .. } = stepping;
         let ctx = self.step_context(h);
         direct::begin_step(direct);
-        let projects = stepper == Stepper::Direct && self.params.direct.project_joints;
-        let at_once =
-            if stepper == Stepper::Direct && moved.is_none() { self.islands_at_once(islands) } else { 1 };
+        let projects = self.params.direct.project_joints;
+        let at_once = if moved.is_none() { self.islands_at_once(islands) } else { 1 };
         if works.len() < at_once {
             works.resize_with(at_once, IslandWork::default);
         }
@@ -201,31 +233,22 @@ impl World {
                     Some((bodies, joints)) => self.gather(&bodies, &joints, &mut work.island),
                     None => self.gather(bodies, joints, &mut work.island),
                 }
-                self.assemble(stepper, &ctx, &mut work.island, impacts, direct);
+                self.assemble(&ctx, &mut work.island, impacts, direct);
             }
             self.timing.spent_on(Phase::Assembly);
-            match (stepper, &mut *works) {
-                (Stepper::Direct, [work]) => work.solve(h, &self.params.direct, report.islands, direct),
-                (Stepper::Direct, works) => {
+            match &mut *works {
+                [work] => work.solve(h, &self.params.direct, report.islands, direct),
+                works => {
                     let (settings, number, past) = (&self.params.direct, report.islands, &*direct);
                     self.crew.each(chunks(works, 1), |i, work| {
                         work.iter_mut().for_each(|work| work.solve(h, settings, number + i, past));
                     });
                 }
-                (_, works) => {
-                    for work in works {
-                        work.solved = quick::solve(&mut work.island, h, &self.params.quick, random, quick);
-                        report.count_exit(quick.exit);
-                        quick::update_velocities(&mut work.island, h, quick);
-                    }
-                }
             }
             for work in &mut *works {
-                if stepper == Stepper::Direct {
-                    work.remember(direct);
-                    if work.report.rows > 0 {
-                        report.solves.push(work.report);
-                    }
+                work.remember(direct);
+                if work.report.rows > 0 {
+                    report.solves.push(work.report);
                 }
                 let bodies = work.island.movable;
                 report.count_island(bodies, work.island.rows.len(), work.solved);
@@ -239,14 +262,12 @@ impl World {
                     self.move_and_project(island, moved_island, &ctx, number + i, direct);
                 }
                 let observer = moved.as_mut().map(|moved| &mut **moved as MovedObserver<'_>);
-                self.move_bodies(island, (stepper, h, projects), observer, report);
+                self.move_bodies(island, (Stepper::Direct, h, projects), observer, report);
             }
             self.timing.spent_on(Phase::Integrate);
             first += works.len();
         }
         direct::end_step(direct);
-        self.scratch.stepping = Some(stepping);
-        Ok(())
     }
 
     /// How many islands may be solved at the same time: one, unless there are threads for more, enough to do, and no callback that an earlier
@@ -263,21 +284,18 @@ impl World {
     /// Writes the rows of an island that is gathered.
     fn assemble(
         &mut self,
-        stepper: Stepper,
         ctx: &StepContext,
         island: &mut Island,
         impacts: &mut impacts::Workspace,
         direct: &mut direct::Workspace,
     ) {
-        if stepper == Stepper::Direct && self.params.direct.impacts == ImpactLaw::InTurn {
+        if self.params.direct.impacts == ImpactLaw::InTurn {
             self.collide_in_turn(island, impacts);
         }
         self.apply_gravity(island);
         self.apply_gyroscopic_torques(island, ctx.h);
         self.count_rows(island, ctx);
-        if stepper == Stepper::Direct {
-            direct::arrange(&mut island.spans, direct);
-        }
+        direct::arrange(&mut island.spans, direct);
         self.write_rows(island, ctx);
     }
 

@@ -125,7 +125,9 @@ mod tests {
 
     #[test]
     fn phases_take_the_time_between_calls_of_the_clock() {
-        for (stepper, islands) in [(Stepper::Direct, 2.0), (Stepper::Quick, 2.0), (Stepper::Substep, 1.0)] {
+        // `Quick` takes two islands in, and solves both at once.
+        let [each, both, one] = [[2.0, 2.0, 2.0], [2.0, 3.0, 2.0], [1.0, 1.0, 1.0]];
+        for (stepper, phases) in [(Stepper::Direct, each), (Stepper::Quick, both), (Stepper::Substep, one)] {
             let mut world = two_islands();
             world.step(stepper, 0.01).unwrap();
             assert_eq!(world.step_times(), None);
@@ -134,11 +136,8 @@ mod tests {
             for _ in 0..2 {
                 world.step(stepper, 0.01).unwrap();
                 let times = world.step_times().unwrap();
-                assert_eq!(
-                    [times.collision, times.assembly, times.solve, times.integrate],
-                    [0.0, islands, islands, islands],
-                    "{stepper:?}"
-                );
+                assert_eq!([times.assembly, times.solve, times.integrate], phases, "{stepper:?}");
+                assert_eq!(times.collision, 0.0);
             }
             world.set_step_clock(None);
             assert_eq!(world.step_times(), None);

@@ -34,6 +34,6 @@ pub use problem::BoxedLcp;
 pub use residual::natural_residual;
 pub use sor::{
     DynamicIterations, InfTimesZero, NO_BODY, SorAcceleration, SorBody, SorExit, SorParams, SorReport,
-    SorRow, SorWorkspace, solve_sor, solve_sor_rows,
+    SorRow, SorWorkspace, begin_sor_rows, finish_sor, solve_sor, solve_sor_rows,
 };
 pub use sparse::{NO_SPARSE_BODY, RowBlock, ScaledRow};

@@ -18,7 +18,8 @@
 //! **Order.** At first all rows without a friction index in their order, then all with one. At the start of the iterations 8, 16, 24, …
 //! the whole order is shuffled in place: for k = 1 … m-1, r = random(k + 1), entries k and r change places.
 //!
-//! Up to two dozen rows on few bodies, such as a box on the ground, are visited in the same order on their matrix (`small`).
+//! Up to two dozen rows on few bodies, such as a box on the ground, are visited in the same order on their matrix (`small`), those of several
+//! problems side by side if [`begin_sor_rows`] has taken them in.
 
 mod small;
 mod sweep;
@@ -26,6 +27,7 @@ mod sweep;
 use crate::error::{LcpError, check_len};
 use core::marker::PhantomData;
 use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
+use small::Small;
 use std::borrow::Borrow;
 use sweep::{Interleaving, InverseMass, PackedRow, Six, Stretch, Sweep, find_stretches, interleave};
 
@@ -34,6 +36,9 @@ pub const NO_BODY: u32 = u32::MAX;
 
 /// How many iterations lie between two shuffles of the rows.
 const SHUFFLE_PERIOD: u32 = 8;
+
+/// So many problems that wait are put in order by size.
+const TOGETHER: usize = 8;
 
 /// The bodies that stand for no body: several, by turns, so that rows that have none of their own don't wait for each other.
 const STAND_INS: usize = 8;
@@ -164,6 +169,22 @@ pub struct SorReport {
     pub finite: bool,
 }
 
+/// How far a solve is.
+#[derive(Clone, Copy, Debug, Default)]
+enum State {
+    /// There is no answer.
+    #[default]
+    Idle,
+    /// The problem is taken in, and its random numbers are drawn.
+    Begun {
+        iterations: u32,
+    },
+    Ended {
+        iterations: u32,
+        exit: SorExit,
+    },
+}
+
 /// All memory that a solve needs, and its answer. Made once, it grows to the largest problem met; a solve that fits
 /// allocates nothing.
 #[derive(Clone, Debug, Default)]
@@ -181,7 +202,9 @@ pub struct SorWorkspace {
     lambda: Vec<f64>,
     /// The accelerations, and those of [`STAND_INS`] bodies that stand for no body.
     acceleration: Vec<SorAcceleration>,
-    small: small::Small,
+    small: Small,
+    /// What [`begin_sor_rows`] has begun, or how it ended.
+    state: State,
     /// Largest component of `B` per row and body; sums of upward and downward changes per body.
     weight: Vec<[f64; 2]>,
     change: Vec<[f64; 2]>,
@@ -204,6 +227,17 @@ impl SorWorkspace {
     #[must_use]
     pub fn acceleration(&self) -> &[SorAcceleration] {
         &self.acceleration[..self.acceleration.len().saturating_sub(STAND_INS)]
+    }
+
+    /// What the last solve did; `None` if there was none, or it has not ended.
+    #[must_use]
+    pub fn report(&self) -> Option<SorReport> {
+        let State::Ended { iterations, exit } = self.state else { return None };
+        let (blocks, rest) = self.lambda.as_chunks();
+        let finite = all_finite(blocks.iter())
+            && rest.iter().all(|v| v.is_finite())
+            && all_finite(self.acceleration.iter().map(|a| &a.0));
+        Some(SorReport { iterations, exit, finite })
     }
 }
 
@@ -237,13 +271,32 @@ pub fn solve_sor_rows(
     random: &mut impl FnMut(u32) -> u32,
     workspace: &mut SorWorkspace,
 ) -> Result<SorReport, LcpError> {
+    begin_sor_rows(bodies, count, rows, params, random, workspace)?;
+    finish_sor(core::iter::once(&mut *workspace));
+    Ok(workspace.report().unwrap_or(SorReport { iterations: 0, exit: SorExit::Completed, finite: true }))
+}
+
+/// The first half of [`solve_sor_rows`]: takes the problem in and draws all random numbers. A problem of few rows waits for
+/// [`finish_sor`] then, which solves several in less time than one by one; any other is solved at once.
+///
+/// # Errors
+/// As [`solve_sor_rows`].
+pub fn begin_sor_rows(
+    bodies: &[SorBody],
+    count: usize,
+    rows: impl Iterator<Item: Borrow<SorRow>>,
+    params: &SorParams,
+    random: &mut impl FnMut(u32) -> u32,
+    workspace: &mut SorWorkspace,
+) -> Result<(), LcpError> {
+    workspace.state = State::Idle;
     check_params(params)?;
     if let Err(error) = dispatch_quads(Load { workspace, bodies, count, rows, params }) {
         workspace.lambda.clear();
         workspace.acceleration.clear();
         return Err(error);
     }
-    let (iterations, exit) = match (params.dynamic, params.inf_times_zero) {
+    match (params.dynamic, params.inf_times_zero) {
         (None, InfTimesZero::Unbounded) => {
             dispatch_quads(Run::<_, false, false> { workspace, params, random })
         }
@@ -252,12 +305,14 @@ pub fn solve_sor_rows(
             dispatch_quads(Run::<_, false, true> { workspace, params, random })
         }
         (Some(_), InfTimesZero::Zero) => dispatch_quads(Run::<_, true, true> { workspace, params, random }),
-    };
-    let (blocks, rest) = workspace.lambda.as_chunks();
-    let finite = all_finite(blocks.iter())
-        && rest.iter().all(|v| v.is_finite())
-        && all_finite(workspace.acceleration.iter().map(|a| &a.0));
-    Ok(SorReport { iterations, exit, finite })
+    }
+    Ok(())
+}
+
+/// Solves what [`begin_sor_rows`] has begun in these workspaces, if it still waits. The answers are, to the bit, those of
+/// solving each problem by itself.
+pub fn finish_sor<'a>(workspaces: impl Iterator<Item = &'a mut SorWorkspace>) {
+    dispatch_quads(Finish { workspaces });
 }
 
 /// Whether all numbers are finite: 0 times a number is 0 unless the number is infinite or none.
@@ -291,11 +346,11 @@ impl<R: Iterator<Item: Borrow<SorRow>>> QuadKernel for Load<'_, R> {
 
 /// Whether the few rows that there are can be solved by their matrix.
 fn is_small(rows: usize, bodies: usize, params: &SorParams) -> bool {
-    params.dynamic.is_none() && small::suits(rows, bodies)
+    params.dynamic.is_none() && small::suits(rows, bodies, params.iterations)
 }
 
 /// Shuffles the order of the rows.
-fn shuffle(order: &mut [u32], random: &mut impl FnMut(u32) -> u32) {
+fn shuffle<T>(order: &mut [T], random: &mut impl FnMut(u32) -> u32) {
     for k in 1..order.len() {
         let r = random(k as u32 + 1) as usize;
         order.swap(k, r.min(k));
@@ -310,11 +365,57 @@ struct Run<'a, R, const ZERO: bool, const DYNAMIC: bool> {
 }
 
 impl<R: FnMut(u32) -> u32, const ZERO: bool, const DYNAMIC: bool> QuadKernel for Run<'_, R, ZERO, DYNAMIC> {
-    type Out = (u32, SorExit);
+    type Out = ();
 
     #[inline(always)]
-    fn run<Q: Quad>(self) -> (u32, SorExit) {
-        self.workspace.run::<Q, ZERO, DYNAMIC>(self.params, self.random)
+    fn run<Q: Quad>(self) {
+        self.workspace.state = self.workspace.run::<Q, ZERO, DYNAMIC>(self.params, self.random);
+    }
+}
+
+/// The visits of problems that wait, compiled for the machine.
+struct Finish<I> {
+    workspaces: I,
+}
+
+impl<'a, I: Iterator<Item = &'a mut SorWorkspace>> QuadKernel for Finish<I> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<Q: Quad>(self) {
+        let mut waiting = self.workspaces.filter(|workspace| matches!(workspace.state, State::Begun { .. }));
+        loop {
+            let mut some = [const { None }; TOGETHER];
+            let mut count = 0;
+            for (place, workspace) in some.iter_mut().zip(&mut waiting) {
+                *place = Some(workspace);
+                count += 1;
+            }
+            let some = &mut some[..count];
+            // Those of one size side by side: a visit takes as long as that of the largest.
+            some.sort_unstable_by_key(|workspace| workspace.as_ref().map(|workspace| workspace.small.left()));
+            finish_all::<Q>(some.iter_mut().filter_map(Option::take));
+            if count < TOGETHER {
+                return;
+            }
+        }
+    }
+}
+
+/// Solves what waits, two at a time.
+#[inline(always)]
+fn finish_all<'a, Q: Quad>(mut waiting: impl Iterator<Item = &'a mut SorWorkspace>) {
+    let (mut first, mut second) = (waiting.next(), waiting.next());
+    while let Some(one) = first {
+        match &mut second {
+            Some(other) => Small::visit::<Q, 2>([&mut one.small, &mut other.small]),
+            None => Small::visit::<Q, 1>([&mut one.small]),
+        }
+        second = second.and_then(|other| other.finished::<Q>().map_or_else(|| waiting.next(), Some));
+        first = one.finished::<Q>().map_or_else(|| second.take().or_else(|| waiting.next()), Some);
+        if second.is_none() {
+            second = waiting.next();
+        }
     }
 }
 
@@ -425,22 +526,37 @@ impl SorWorkspace {
         Ok(())
     }
 
-    /// Does the iterations. `ZERO`: infinity times zero is zero; `DYNAMIC`: watch the changes.
+    /// Writes the answer down if all visits are made; else gives the workspace back.
+    #[inline(always)]
+    fn finished<Q: Quad>(&mut self) -> Option<&mut Self> {
+        if self.small.left() > 0 {
+            return Some(self);
+        }
+        let (rows, bodies) = (self.order.len(), self.acceleration.len() - STAND_INS);
+        let Self { small, packed, lambda, acceleration, .. } = self;
+        small.finish::<Q>(&packed[..rows], &mut lambda[..rows], &mut acceleration[..bodies]);
+        if let State::Begun { iterations } = self.state {
+            self.state = State::Ended { iterations, exit: SorExit::Completed };
+        }
+        None
+    }
+
+    /// Does the iterations, or prepares them if they can wait for others'. `ZERO`: infinity times zero is zero; `DYNAMIC`: watch the changes.
     #[inline(always)]
     fn run<Q: Quad, const ZERO: bool, const DYNAMIC: bool>(
         &mut self,
         params: &SorParams,
         random: &mut impl FnMut(u32) -> u32,
-    ) -> (u32, SorExit) {
+    ) -> State {
         let planned = params.iterations;
+        let ended = |iterations, exit| State::Ended { iterations, exit };
         if planned == 0 {
-            return (0, SorExit::Completed);
+            return ended(0, SorExit::Completed);
         }
         let (rows, bodies) = (self.order.len(), self.acceleration.len() - STAND_INS);
         if !DYNAMIC && is_small(rows, bodies, params) {
-            let Self { small, packed, order, lambda, acceleration, .. } = self;
-            small.run::<Q>(&packed[..rows], order, lambda, &mut acceleration[..bodies], params, random);
-            return (planned, SorExit::Completed);
+            self.small.begin::<Q>(&self.packed[..rows], &self.order, bodies, params, random);
+            return State::Begun { iterations: planned };
         }
         let mut done = 0;
         let mut extra = 0;
@@ -454,7 +570,7 @@ impl SorWorkspace {
             let added = params.dynamic.map_or(0, |d| d.extra_iterations);
             if done == planned.saturating_add(extra) {
                 if extra != 0 || added == 0 {
-                    return (done, if extra != 0 { SorExit::FullExtra } else { SorExit::Completed });
+                    return ended(done, if extra != 0 { SorExit::FullExtra } else { SorExit::Completed });
                 }
                 extra = added;
                 limit = params.dynamic.map_or(0.0, |d| d.extra_requirement_delta);
@@ -465,7 +581,7 @@ impl SorWorkspace {
                     std::cmp::Ordering::Equal => SorExit::Completed,
                     std::cmp::Ordering::Greater => SorExit::Prolonged,
                 };
-                return (done, exit);
+                return ended(done, exit);
             }
         }
     }

@@ -212,6 +212,39 @@ proptest! {
 }
 
 #[test]
+fn several_at_once_have_the_bits_of_each_by_itself() {
+    let mut numbers = Numbers(11);
+    // More than are put in order at once, few rows and many, no rows, one that is refused, all kinds of bounds.
+    let sizes = [3, 24, 1, 9, 0, 30, 12, 5, 24, 8, 2, 60, 17, 4, 6, 21, 7, 16, 3];
+    let scenes: Vec<_> =
+        sizes.iter().map(|&rows| random_scene(1 + rows / 12, rows, true, &mut numbers)).collect();
+    for iterations in [0, 1, 8, 20] {
+        for inf_times_zero in [InfTimesZero::Unbounded, InfTimesZero::Zero] {
+            let params = SorParams { iterations, inf_times_zero, ..SorParams::default() };
+            let (mut one, mut other) = (stream(5), stream(5));
+            let mut together: Vec<SorWorkspace> = scenes.iter().map(|_| SorWorkspace::new()).collect();
+            for ((bodies, rows), ws) in scenes.iter().zip(&mut together) {
+                begin_sor_rows(bodies, rows.len(), rows.iter(), &params, &mut one, ws).unwrap();
+            }
+            let mut refused = SorWorkspace::new();
+            assert!(begin_sor_rows(&[], 3, [].iter(), &params, &mut one, &mut refused).is_err());
+            finish_sor(together.iter_mut().chain([&mut refused]));
+            assert_eq!(refused.report(), None);
+            for ((bodies, rows), ws) in scenes.iter().zip(&together) {
+                let mut alone = SorWorkspace::new();
+                let report = solve_sor(bodies, rows, &params, &mut other, &mut alone).unwrap();
+                assert_eq!(ws.report(), Some(report));
+                let bits = |ws: &SorWorkspace| -> Vec<u64> {
+                    let accelerations = ws.acceleration().iter().flat_map(|a| a.0);
+                    ws.lambda().iter().copied().chain(accelerations).map(f64::to_bits).collect()
+                };
+                assert_eq!(bits(ws), bits(&alone), "{} rows", rows.len());
+            }
+        }
+    }
+}
+
+#[test]
 fn rows_may_be_made_on_the_way() {
     let (bodies, rows) = random_scene(5, 30, true, &mut Numbers(3));
     let params = SorParams::default();

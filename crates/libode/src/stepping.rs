@@ -139,7 +139,11 @@ pub fn step(world: &'static WorldRecord, method: Method, stepsize: Real) -> Outc
     // SAFETY: as in `WorldRecord::engine`; when the step calls out, `call_back` lends its own reborrow to other calls.
     let engine_world = unsafe { &mut *engine };
     let report = match method {
-        Method::Plain(stepper) => engine_world.step_observed(stepper, h, &mut random, &mut observe),
+        Method::Plain(stepper) => {
+            // Without callbacks of the program's nothing changes the engine's world meanwhile.
+            let looks_only = !WATCHED.load(Ordering::Relaxed);
+            engine_world.step_observed(stepper, h, &mut random, (&mut observe, looks_only))
+        }
         Method::Fast { iterations, depth } => {
             engine_world.step_fast(h, iterations, depth, &mut random, &mut observe)
         }

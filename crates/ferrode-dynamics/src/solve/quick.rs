@@ -5,7 +5,7 @@ use crate::rows::{NO_FRICTION_INDEX, Row};
 use crate::step::{Island, JointSpan};
 use crate::world::QuickSettings;
 use ferrode_lcp::sor::{
-    InfTimesZero, NO_BODY, SorBody, SorExit, SorParams, SorRow, SorWorkspace, solve_sor_rows,
+    InfTimesZero, NO_BODY, SorBody, SorExit, SorParams, SorRow, SorWorkspace, begin_sor_rows, finish_sor,
 };
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Vec3};
@@ -16,26 +16,28 @@ pub(crate) struct Workspace {
     free: Vec<FreeMotion>,
     bodies: Vec<SorBody>,
     sor: SorWorkspace,
+    /// The problem was accepted.
+    begun: bool,
     solved: bool,
     /// What ended the last solve.
     pub exit: Option<SorExit>,
 }
 
-/// Finds the forces of an island's rows.
-pub(crate) fn solve(
+/// Begins to find the forces of an island's rows: draws all random numbers, and solves the island unless it has few rows. These wait
+/// for [`solve`], which finds the forces of several islands side by side.
+pub(crate) fn begin(
     island: &mut Island,
     h: f64,
     settings: &QuickSettings,
     random: &mut OdeRandom,
     work: &mut Workspace,
-) -> Solved {
+) {
     let m = island.rows.len();
-    island.lambda.clear();
-    island.lambda.resize(m, 0.0);
+    work.begun = false;
     work.solved = false;
     work.exit = None;
     if m == 0 {
-        return Solved::Completely;
+        return;
     }
     let fps = 1.0 / h;
     free_motions(&island.bodies, fps, &mut work.free);
@@ -43,7 +45,7 @@ pub(crate) fn solve(
     work.bodies.extend(
         island.bodies.iter().map(|b| SorBody { inv_mass: b.inv_mass, inv_inertia: flatten(&b.inv_inertia) }),
     );
-    let Island { rows, spans, lambda, .. } = island;
+    let Island { rows, spans, .. } = island;
     let rows = SorRows { spans: spans.iter(), rows: rows.iter(), span: None, left: 0, free: &work.free, fps };
     const { assert!(NO_BODY == crate::arena::NIL) };
     let params = SorParams {
@@ -56,16 +58,34 @@ pub(crate) fn solve(
         },
         dynamic: settings.dynamic,
     };
-    let result = solve_sor_rows(&work.bodies, m, rows, &params, &mut |n| random.next_below(n), &mut work.sor);
-    match result {
-        Ok(report) if report.finite => {
-            lambda.copy_from_slice(work.sor.lambda());
+    let mut random = |n| random.next_below(n);
+    work.begun = begin_sor_rows(&work.bodies, m, rows, &params, &mut random, &mut work.sor).is_ok();
+}
+
+/// Solves the islands that wait.
+pub(crate) fn solve<'a>(islands: impl Iterator<Item = &'a mut Workspace>) {
+    finish_sor(islands.filter(|work| work.begun).map(|work| &mut work.sor));
+}
+
+/// Writes the forces of a solved island down.
+pub(crate) fn finish(island: &mut Island, work: &mut Workspace) -> Solved {
+    let Island { rows, lambda, .. } = island;
+    lambda.clear();
+    if rows.is_empty() {
+        return Solved::Completely;
+    }
+    match work.sor.report().filter(|report| work.begun && report.finite) {
+        Some(report) => {
+            lambda.extend_from_slice(work.sor.lambda());
             work.solved = true;
             work.exit = Some(report.exit);
             Solved::Completely
         }
         // No forces at all rather than forces that are no numbers.
-        _ => Solved::Partly,
+        None => {
+            lambda.resize(rows.len(), 0.0);
+            Solved::Partly
+        }
     }
 }
 

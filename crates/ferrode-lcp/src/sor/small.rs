@@ -10,6 +10,10 @@
 //!
 //! and what the next row k wants, `r_k + T_jk delta`, is found at once, one product, one sum and the bounds after this one. The accelerations are
 //! added up at the end. The answer is that of visiting the bodies, to rounding.
+//!
+//! **Side by side.** Even so a visit is a chain of operations that leaves most of the processor idle. Two problems don't wait for each other, so
+//! their visits are made by turns, in one loop; when one of them is done, the next takes its place. For that the order of all visits is
+//! drawn when a problem is taken in, which is when its random numbers are due.
 
 use super::sweep::{PackedRow, Six, bounds, clamp};
 use super::{InfTimesZero, SHUFFLE_PERIOD, SorAcceleration, SorParams, shuffle};
@@ -17,62 +21,107 @@ use ferrode_math::simd::Quad;
 
 /// The most rows: a visit takes time in proportion to them.
 const MOST_ROWS: usize = 24;
-/// Room for these and the force that is always 1, such that no index needs a look whether it is within.
+/// Room for these and the force that is always 1.
 const PLACES: usize = 32;
+/// The most blocks of four columns.
+const WIDEST: usize = 6;
 const _: () = assert!(MOST_ROWS < PLACES);
-const _: () = assert!(MOST_ROWS.div_ceil(4) == 6, "Small::sweep has a case for each width");
+const _: () = assert!(MOST_ROWS.div_ceil(4) == WIDEST, "Small::visit has a case for each width");
+/// The most iterations whose visits are written down beforehand.
+const MOST_ITERATIONS: u32 = 1000;
 
-/// The memory of the method.
+/// A problem of few rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Small {
     /// `-d J` by columns: six for each body, each with all rows' entries.
     columns: Vec<[f64; 4]>,
-    /// `T`, row by row.
-    matrix: Vec<[f64; 4]>,
-    /// The changes that the rows want.
-    wanted: Vec<[f64; 4]>,
-    limits: [Limit; PLACES],
+    /// None or one: most worlds don't need it.
+    tables: Vec<Tables>,
+    /// Blocks of four columns.
+    width: usize,
+    /// The rows in the order of all visits, and one more, whose change nobody asks for.
+    visits: Vec<u8>,
+    /// Visits to make.
+    count: usize,
+    /// Visits made.
+    made: usize,
 }
 
-/// The bounds of a row's force, and the force that scales them.
+/// What visits read and write. There is more room than needed, so that no index needs a look whether it is within.
+#[derive(Clone, Debug, Default)]
+#[repr(C, align(64))]
+struct Tables {
+    /// `T`, row by row.
+    matrix: [Blocks; PLACES],
+    /// The changes that the rows want.
+    wanted: Blocks,
+    places: [Place; PLACES],
+}
+
+/// A number for each row.
+type Blocks = [[f64; 4]; PLACES / 4];
+
+/// A row's force, its bounds, and whose force scales these.
 #[derive(Clone, Copy, Debug, Default)]
-struct Limit {
+#[repr(C, align(32))]
+struct Place {
     lo: f64,
     hi: f64,
+    force: f64,
     scale: u32,
 }
 
-/// Whether the method is the faster one. With many bodies, rows seldom wait for each other.
-pub(super) fn suits(rows: usize, bodies: usize) -> bool {
-    (1..=MOST_ROWS).contains(&rows) && rows >= 6 * bodies
+/// Whether the method is the faster one. With many bodies, few rows wait for each other, and there are more products to form.
+pub(super) fn suits(rows: usize, bodies: usize, iterations: u32) -> bool {
+    (1..=MOST_ROWS).contains(&rows) && rows >= 3 * bodies && (1..=MOST_ITERATIONS).contains(&iterations)
 }
 
 impl Small {
-    /// Does `params.iterations` iterations on forces that are zero, and adds the accelerations up.
+    /// Takes a problem in and draws the order of its visits.
     #[inline(always)]
-    pub fn run<Q: Quad>(
+    pub fn begin<Q: Quad>(
         &mut self,
         packed: &[PackedRow],
-        order: &mut [u32],
-        lambda: &mut [f64],
-        acceleration: &mut [SorAcceleration],
+        order: &[u32],
+        bodies: usize,
         params: &SorParams,
         random: &mut impl FnMut(u32) -> u32,
     ) {
-        self.load::<Q>(packed, acceleration.len());
-        let mut forces = [0.0; PLACES];
-        forces[packed.len()] = 1.0;
+        self.load::<Q>(packed, bodies, params.inf_times_zero);
+        let rows = packed.len();
+        let mut places = [0; PLACES];
+        for (place, row) in places.iter_mut().zip(order) {
+            *place = *row as u8;
+        }
+        self.count = params.iterations as usize * rows;
+        self.made = 0;
+        self.visits.resize(self.count + PLACES, 0);
         for done in 0..params.iterations {
             if done > 0 && done % SHUFFLE_PERIOD == 0 {
-                shuffle(order, random);
+                shuffle(&mut places[..rows], random);
             }
-            match params.inf_times_zero {
-                InfTimesZero::Unbounded => self.sweep::<Q, false>(order, &mut forces),
-                InfTimesZero::Zero => self.sweep::<Q, true>(order, &mut forces),
-            }
+            // The whole array: the next iteration's comes over what is too much.
+            self.visits[done as usize * rows..][..PLACES].copy_from_slice(&places);
         }
-        lambda[..packed.len()].copy_from_slice(&forces[..packed.len()]);
-        for (row, force) in packed.iter().zip(&forces) {
+    }
+
+    /// Visits that are left.
+    #[inline(always)]
+    pub fn left(&self) -> usize {
+        self.count - self.made
+    }
+
+    /// The forces, and the accelerations that they cause, added to what is there.
+    #[inline(always)]
+    pub fn finish<Q: Quad>(
+        &self,
+        packed: &[PackedRow],
+        lambda: &mut [f64],
+        acceleration: &mut [SorAcceleration],
+    ) {
+        let Some(Tables { places, .. }) = self.tables.first() else { return };
+        for ((row, Place { force, .. }), lambda) in packed.iter().zip(places).zip(lambda) {
+            *lambda = *force;
             for (body, b) in row.body.into_iter().zip([row.vector::<Q>(1), row.vector(3)]) {
                 if let Some(SorAcceleration(a)) = acceleration.get_mut(body as usize) {
                     Six::load(a).plus(b.scaled(*force)).store(a);
@@ -83,17 +132,27 @@ impl Small {
 
     /// Forms the matrix.
     #[inline(always)]
-    fn load<Q: Quad>(&mut self, packed: &[PackedRow], bodies: usize) {
-        let width = packed.len().div_ceil(4);
-        let Self { columns, matrix, wanted, limits } = self;
+    fn load<Q: Quad>(&mut self, packed: &[PackedRow], bodies: usize, inf_times_zero: InfTimesZero) {
+        let width = packed.len().div_ceil(4).min(WIDEST);
+        self.width = width;
+        if self.tables.is_empty() {
+            self.tables.push(Tables::default());
+        }
+        let Self { columns, tables, .. } = self;
+        let Some(Tables { matrix, wanted, places }) = tables.first_mut() else { return };
         columns.clear();
         columns.resize(bodies * 6 * width, [0.0; 4]);
-        wanted.clear();
-        wanted.resize(width, [0.0; 4]);
+        *wanted = Blocks::default();
+        places[packed.len() % PLACES] = Place { force: 1.0, ..Place::default() };
+        // Infinity times zero is no number, which bounds nothing; any finite number times zero is zero.
+        let end = |bound: f64| match inf_times_zero {
+            InfTimesZero::Unbounded => bound,
+            InfTimesZero::Zero => bound.clamp(f64::MIN, f64::MAX),
+        };
         let numbers = columns.as_flattened_mut();
         for (i, row) in packed.iter().enumerate() {
             wanted.as_flattened_mut()[i] = row.rhs;
-            limits[i] = Limit { lo: row.lo, hi: row.hi, scale: row.scale };
+            places[i] = Place { lo: end(row.lo), hi: end(row.hi), force: 0.0, scale: row.scale };
             for (side, body) in row.body.into_iter().enumerate() {
                 if (body as usize) < bodies {
                     let start = body as usize * 24 * width + i;
@@ -103,58 +162,83 @@ impl Small {
                 }
             }
         }
-        matrix.clear();
-        matrix.resize(PLACES * width, [0.0; 4]);
-        for (i, (out, row)) in matrix.chunks_exact_mut(width).zip(packed).enumerate() {
+        for (i, (out, row)) in matrix.iter_mut().zip(packed).enumerate() {
+            out[..WIDEST].fill([0.0; 4]);
             for (side, body) in row.body.into_iter().enumerate() {
                 if (body as usize) < bodies {
                     let columns = &columns[body as usize * 6 * width..][..6 * width];
-                    add_products::<Q>(out, columns, row.numbers(2 * side + 1));
+                    add_products::<Q>(&mut out[..width], columns, row.numbers(2 * side + 1));
                 }
             }
             out.as_flattened_mut()[i] -= row.cfm;
         }
     }
 
-    /// Visits every row once.
+    /// Makes visits of some problems, as many of each as are left of the one with the fewest.
     #[inline(always)]
-    fn sweep<Q: Quad, const ZERO: bool>(&mut self, order: &[u32], forces: &mut [f64; PLACES]) {
-        match self.wanted.len() {
-            1 => self.sweep_blocks::<Q, ZERO, 1>(order, forces),
-            2 => self.sweep_blocks::<Q, ZERO, 2>(order, forces),
-            3 => self.sweep_blocks::<Q, ZERO, 3>(order, forces),
-            4 => self.sweep_blocks::<Q, ZERO, 4>(order, forces),
-            5 => self.sweep_blocks::<Q, ZERO, 5>(order, forces),
-            _ => self.sweep_blocks::<Q, ZERO, 6>(order, forces),
+    pub fn visit<Q: Quad, const N: usize>(problems: [&mut Self; N]) {
+        let (mut width, mut count) = (1, usize::MAX);
+        for problem in &problems {
+            (width, count) = (problem.width.max(width), problem.left().min(count));
+        }
+        match width {
+            1 => Self::visit_blocks::<Q, N, 1>(problems, count),
+            2 => Self::visit_blocks::<Q, N, 2>(problems, count),
+            3 => Self::visit_blocks::<Q, N, 3>(problems, count),
+            4 => Self::visit_blocks::<Q, N, 4>(problems, count),
+            5 => Self::visit_blocks::<Q, N, 5>(problems, count),
+            _ => Self::visit_blocks::<Q, N, WIDEST>(problems, count),
         }
     }
 
-    /// Visits every row once; the matrix has `W` blocks of columns.
+    /// Makes `count` visits of each problem; their matrices have `W` blocks of columns, or fewer and then zeros.
     #[inline(always)]
-    fn sweep_blocks<Q: Quad, const ZERO: bool, const W: usize>(
-        &mut self,
-        order: &[u32],
-        forces: &mut [f64; PLACES],
-    ) {
-        let Self { matrix, wanted, limits, .. } = self;
-        let Some(wanted) = wanted.first_chunk_mut::<W>() else { return };
-        let Some(columns) = matrix.as_chunks::<W>().0.first_chunk::<PLACES>() else { return };
-        let at = |row: u32| row as usize % PLACES;
-        let Some(mut row) = order.first().copied().map(at) else { return };
-        let mut change = wanted.as_flattened()[row];
-        // After the last row the first one again, whose change nobody asks for.
-        for next in order[1..].iter().chain(order.first()).copied().map(at) {
-            let (limit, column) = (&limits[row], &columns[row]);
-            let old = forces[row];
-            let (lo, hi) = bounds::<ZERO>(limit.lo, limit.hi, forces[at(limit.scale)]);
-            let delta = clamp(change, lo - old, hi - old);
-            forces[row] = clamp(old + change, lo, hi);
-            change = wanted.as_flattened()[next] + column.as_flattened()[next] * delta;
-            let delta = Q::splat(delta);
-            for (wanted, column) in wanted.iter_mut().zip(column) {
-                (Q::load(wanted) + Q::load(column) * delta).store(wanted);
+    fn visit_blocks<Q: Quad, const N: usize, const W: usize>(problems: [&mut Self; N], count: usize) {
+        let mut lanes = problems.map(|problem| problem.lane(count));
+        for visit in 0..count {
+            for lane in &mut lanes {
+                lane.visit::<Q, W>(lane.next[..count][visit]);
             }
-            row = next;
+        }
+    }
+
+    /// The next visits; marks them as made.
+    #[inline(always)]
+    fn lane(&mut self, count: usize) -> Lane<'_> {
+        let row = usize::from(self.visits[self.made]) % PLACES;
+        let next = &self.visits[self.made + 1..][..count];
+        self.made += count;
+        let tables = &mut self.tables[0];
+        Lane { row, change: tables.wanted.as_flattened()[row], next, tables }
+    }
+}
+
+/// A problem whose visits are being made.
+struct Lane<'a> {
+    tables: &'a mut Tables,
+    /// The rows of the visits after this one.
+    next: &'a [u8],
+    /// The row to visit, and the change that it wants.
+    row: usize,
+    change: f64,
+}
+
+impl Lane<'_> {
+    #[inline(always)]
+    fn visit<Q: Quad, const W: usize>(&mut self, next: u8) {
+        let Tables { matrix, wanted, places } = &mut *self.tables;
+        let row = self.row % PLACES;
+        let Place { lo, hi, force: old, scale } = places[row];
+        let (lo, hi) = bounds::<false>(lo, hi, places[scale as usize % PLACES].force);
+        let delta = clamp(self.change, lo - old, hi - old);
+        places[row].force = clamp(old + self.change, lo, hi);
+        let column = &matrix[row];
+        let next = usize::from(next) % PLACES;
+        self.row = next;
+        self.change = wanted.as_flattened()[next] + column.as_flattened()[next] * delta;
+        let delta = Q::splat(delta);
+        for k in 0..W {
+            (Q::load(&wanted[k]) + Q::load(&column[k]) * delta).store(&mut wanted[k]);
         }
     }
 }
