@@ -32,6 +32,7 @@
 //!
 //! - `ordering`: which unknown to eliminate next, and the shape of the factor;
 //! - `symbolic`: that shape, with where each pair of bodies stands in it, kept while the topology stands;
+//! - `matrix`: what the rows put into it;
 //! - `factor`: the numbers, column by column from the left, so that after a change only the columns from the changed ones to the
 //!   root are done again;
 //! - `kernels`: blocks of 3 or 6 rows and columns; `rows`: products with rows.
@@ -41,6 +42,7 @@
 
 pub(crate) mod factor;
 pub(crate) mod kernels;
+mod matrix;
 pub mod ordering;
 pub(crate) mod rows;
 pub(crate) mod symbolic;

@@ -225,6 +225,15 @@ pub(crate) struct Weighted<'a> {
     pub weight: &'a [f64],
 }
 
+impl Weighted<'_> {
+    /// Those of a block.
+    #[inline(always)]
+    pub fn of(self, block: &RowBlock) -> Self {
+        let range = block.range();
+        Self { rows: &self.rows[range.clone()], weight: &self.weight[range] }
+    }
+}
+
 /// Six numbers of a row.
 #[derive(Clone, Copy)]
 struct Half<Q: Quad>(Q, Q::Pair);

@@ -14,8 +14,9 @@
 //! (Å. Björck, "Iterative refinement and reliable computing", 1990.)
 
 use super::factor::Factor;
-use super::kernels::{Six, by_sizes, stride};
-use super::rows::{self, MOST_OWN, Twelve, UpToSix, Weighted, largest, sub_product, sub_square};
+use super::kernels::{Six, stride};
+use super::matrix;
+use super::rows::{self, MOST_OWN, Twelve, UpToSix, Weighted, largest};
 use super::symbolic::{NONE, Place, Symbolic};
 use super::{NO_SPARSE_BODY, RowBlock, ScaledRow};
 use crate::pivoting::RowState;
@@ -110,7 +111,11 @@ impl QuadKernel for Work<'_> {
                     *diagonal = rows::square::<Q>(row);
                 }
             }
-            Task::Factorise(shape) => system.add_and_factorise::<Q>(blocks, jacobian, shape),
+            Task::Factorise(shape) => {
+                let rows = Weighted { rows: jacobian, weight: &system.weight };
+                matrix::assemble::<Q>(&mut system.factor, blocks, rows, shape, &mut system.whole);
+                system.factor.factorise::<Q>(shape);
+            }
             Task::Correct(shape, state, pass) => {
                 return system.correct::<Q>(blocks, jacobian, state, shape, pass);
             }
@@ -355,38 +360,6 @@ impl System {
         }
     }
 
-    /// Adds the blocks of the rows that have a weight to the stale columns, and factors them.
-    #[inline(always)]
-    fn add_and_factorise<Q: Quad>(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
-        self.factor.clear_stale(shape);
-        self.whole.resize(blocks.len(), false);
-        for ((block, place), whole) in blocks.iter().zip(&shape.places).zip(&mut self.whole) {
-            let range = block.range();
-            let rows = Weighted { rows: &jacobian[range.clone()], weight: &self.weight[range] };
-            *whole = rows.weight.iter().all(|weight| *weight != 0.0);
-            if place.own == NONE {
-                add_folded::<Q>(&mut self.factor, rows, place, shape);
-            } else {
-                add_joint::<Q>(&mut self.factor, rows, light_sides(block, place), place, shape);
-            }
-        }
-        for coupling in &shape.couplings {
-            let [later, earlier] = coupling.blocks.map(|i| i as usize);
-            if !self.factor.is_stale(shape.places[earlier].own) {
-                continue;
-            }
-            let height = shape.size[shape.places[later].own as usize];
-            let out = &mut self.factor.values[shape.at[coupling.at as usize] as usize..];
-            let [rows, cols] = [later, earlier].map(|i| {
-                let range = blocks[i].range();
-                Weighted { rows: &jacobian[range.clone()], weight: &self.weight[range] }
-            });
-            let [s, t] = coupling.sides.map(usize::from);
-            by_sizes!(sub_product, Q, [height], (out, (rows, s), (cols, t)));
-        }
-        self.factor.factorise::<Q>(shape);
-    }
-
     /// Solves with the factor: `dy` holds the right-hand side of the bodies and becomes their part of the solution, `dlambda` that of
     /// the rows with unknowns of their own. If `at_rest`, the bodies' right-hand side is zero.
     #[inline(always)]
@@ -561,73 +534,7 @@ impl System {
     }
 }
 
-/// `J^T S^-1 J` of rows without unknowns of their own.
-#[inline(always)]
-fn add_folded<Q: Quad>(factor: &mut Factor, rows: Weighted<'_>, place: &Place, shape: &Symbolic) {
-    let (columns, pair) = (place.columns, place.at[0]);
-    let stale = columns.map(|c| factor.is_stale(c));
-    if (!stale[0] && !stale[1]) || rows.weight.iter().all(|weight| *weight == 0.0) {
-        return;
-    }
-    for side in 0..2 {
-        if stale[side] {
-            let block = rows::outer_products::<Q>(rows, side, side);
-            factor.add_diagonal(columns[side], shape, &block);
-        }
-    }
-    // The pair's block stands in the column of the body that is eliminated first.
-    let (low, high) = if columns[0] < columns[1] { (0, 1) } else { (1, 0) };
-    if pair != NONE && stale[low] {
-        factor.add_below(pair, shape, &rows::outer_products::<Q>(rows, high, low));
-    }
-}
-
-/// `-S` of a joint, `J` between it and its bodies; of light bodies, which are eliminated already, `-J J^T`.
-#[inline(always)]
-fn add_joint<Q: Quad>(
-    factor: &mut Factor,
-    rows: Weighted<'_>,
-    light: [bool; 2],
-    place: &Place,
-    shape: &Symbolic,
-) {
-    let own = place.own as usize;
-    let width = usize::from(shape.size[own]);
-    if factor.is_stale(place.own) {
-        let diagonal = &mut factor.values[shape.start[own] as usize..];
-        for (c, weight) in rows.weight.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
-            // A row without a weight keeps the -1 that stands there.
-            diagonal[(stride(width) + 1) * c] = -1.0 / weight;
-        }
-        if light != [false; 2] {
-            by_sizes!(sub_square, Q, [width], (diagonal, rows, light));
-        }
-    }
-    for (s, column) in place.columns.into_iter().enumerate() {
-        if column == NONE || !factor.is_stale(column.min(place.own)) {
-            continue;
-        }
-        let values = &mut factor.values[shape.at[place.at[s] as usize] as usize..];
-        for (r, (row, weight)) in rows.rows.iter().zip(rows.weight).enumerate() {
-            if *weight == 0.0 {
-                continue;
-            }
-            for (c, x) in row[s].iter().enumerate() {
-                // By columns: the one eliminated first.
-                let at = if column < place.own { stride(width) * c + r } else { 6 * r + c };
-                values[at] += x;
-            }
-        }
-    }
-}
-
-/// Which of a joint's bodies have no column.
-#[inline(always)]
-fn light_sides(block: &RowBlock, place: &Place) -> [bool; 2] {
-    [0, 1].map(|s| place.columns[s] == NONE && block.bodies[s] != NO_SPARSE_BODY)
-}
-
-/// The same as bodies.
+/// A joint's bodies that have no column.
 #[inline(always)]
 fn light_bodies(block: &RowBlock, place: &Place) -> [u32; 2] {
     [0, 1].map(|s| if place.columns[s] == NONE { block.bodies[s] } else { NO_SPARSE_BODY })
