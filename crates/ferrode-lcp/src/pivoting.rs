@@ -472,7 +472,7 @@ impl Solve<'_, '_> {
         }
         self.largest = system.solve(p.blocks, p.jacobian, state, shape);
         if self.bounded {
-            system.product(p.blocks, p.jacobian);
+            system.product(p.blocks, p.jacobian, shape);
         }
     }
 
@@ -481,7 +481,7 @@ impl Solve<'_, '_> {
         let Self { p, shape, work, pass, .. } = self;
         work.system.refine_roughly(p.blocks, p.jacobian, &work.state, shape, *pass);
         if self.bounded {
-            work.system.product(p.blocks, p.jacobian);
+            work.system.product(p.blocks, p.jacobian, shape);
         }
     }
 

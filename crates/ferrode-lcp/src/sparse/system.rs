@@ -57,8 +57,9 @@ pub(crate) struct System {
     /// The forces and the accelerations that they cause, the latter by body.
     pub lambda: Vec<f64>,
     pub y: Vec<Six>,
-    /// `J y`, brought up to date by [`System::product`] and [`System::correct`].
+    /// `J y`: kept up to date for folded rows, of which there are many to a body, and for the others by [`System::product`].
     pub jy: Vec<f64>,
+    /// Of folded rows the residual, and then what the correction adds to `J y`.
     error: Vec<f64>,
     pub dy: Vec<Six>,
     dlambda: Vec<f64>,
@@ -94,7 +95,7 @@ enum Task<'a> {
     Factorise(&'a Symbolic),
     Correct(&'a Symbolic, &'a [RowState], Pass),
     SolveWeighted(&'a Symbolic, &'a [f64], &'a mut [f64]),
-    Product,
+    Product(&'a Symbolic),
     Accelerations,
 }
 
@@ -122,7 +123,11 @@ impl QuadKernel for Work<'_> {
             Task::SolveWeighted(shape, rho, x) => {
                 system.solve_at_weights::<Q>(blocks, jacobian, shape, rho, x)
             }
-            Task::Product => rows::multiply::<Q>(blocks, jacobian, &system.y, &mut system.jy),
+            Task::Product(shape) => {
+                for (block, _) in blocks.iter().zip(&shape.places).filter(|(_, place)| place.own != NONE) {
+                    rows::multiply::<Q>(core::slice::from_ref(block), jacobian, &system.y, &mut system.jy);
+                }
+            }
             Task::Accelerations => {
                 system.y.fill([0.0; 6]);
                 rows::add_transposed::<Q>(blocks, jacobian, &system.lambda, &mut system.y);
@@ -221,9 +226,9 @@ impl System {
         self.work(blocks, jacobian, Task::SolveWeighted(shape, rho, x));
     }
 
-    /// Sets `jy` to `J y`.
-    pub fn product(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow]) {
-        self.work(blocks, jacobian, Task::Product);
+    /// Sets `jy` to `J y` where it isn't kept up to date.
+    pub fn product(&mut self, blocks: &[RowBlock], jacobian: &[ScaledRow], shape: &Symbolic) {
+        self.work(blocks, jacobian, Task::Product(shape));
     }
 
     /// Sets `y` to `J^T lambda` and `jy` to `J y`, from the forces alone.
@@ -240,6 +245,7 @@ impl System {
         shape: &Symbolic,
     ) -> f64 {
         self.y.fill([0.0; 6]);
+        self.jy.fill(0.0);
         (self.change, self.rate) =
             (self.work(blocks, jacobian, Task::Correct(shape, state, Pass::First)), 1.0);
         self.apply();
@@ -314,6 +320,9 @@ impl System {
         }
         for (lambda, change) in self.lambda.iter_mut().zip(&self.dlambda) {
             *lambda += change;
+        }
+        for (jy, change) in self.jy.iter_mut().zip(&self.error) {
+            *jy += change;
         }
     }
 
@@ -488,12 +497,18 @@ impl System {
                 continue;
             }
             at_rest = false;
-            let y = if first { Twelve::<Q>::zero() } else { Twelve::of_bodies(&self.y, block.bodies) };
+            let kept = first || place.own == NONE;
+            let y = if kept { Twelve::<Q>::zero() } else { Twelve::of_bodies(&self.y, block.bodies) };
             let mut sum = Twelve::<Q>::zero();
             for at in range.clone().step_by(4) {
                 let four = at..range.end.min(at + 4);
                 let rows = &jacobian[four.clone()];
-                let jy = if first { [0.0; 4] } else { rows::up_to_four(rows, y) };
+                let mut jy = [0.0; 4];
+                if kept {
+                    jy[..rows.len()].copy_from_slice(&self.jy[four.clone()]);
+                } else {
+                    jy = rows::up_to_four(rows, y);
+                }
                 let (lambda, state) = (&self.lambda[four.clone()], &state[four.clone()]);
                 let (sigma, rhs) = (&sigma[four.clone()], &self.rhs[four.clone()]);
                 let inverse_sigma = &self.inverse_sigma[four.clone()];
@@ -527,6 +542,7 @@ impl System {
                     let free = state[row] == RowState::Free;
                     let change = (self.error[row] - product) * self.inverse_sigma[row];
                     self.dlambda[row] = if free { change } else { 0.0 };
+                    self.error[row] = product;
                 }
             }
         }
