@@ -12,7 +12,7 @@ pub(super) const DEMO: Demo = Demo {
     seconds: 8.0,
     picture_at: 8.0,
     show: &[],
-    camera: Camera::new([2.75, -3.85, 3.7], [0.0, 0.0, 0.05]),
+    camera: Camera::new([1.9, -2.7, 4.5], [0.0, -0.1, 0.2]),
     build,
 };
 
@@ -31,7 +31,7 @@ fn build() -> Result<Play, Failure> {
     world.set_contact_surface_layer(1e-3)?;
     // With the usual 20 sweeps three heaps in forty, begun a nanometre apart, fell asleep with a body pressed in by more than 5 mm; with
     // these two in a hundred.
-    let quick = world.quick().clone();
+    let quick = *world.quick();
     world.set_quick(QuickSettings { iterations: 50, ..quick })?;
     let_sleep(&mut world)?;
     for side in [-1.0, 1.0] {
