@@ -77,9 +77,9 @@ fn islands_are_solved_to_the_same_bits() {
     }
 }
 
-/// A callback of an island may change what comes later, so such worlds are stepped island after island.
+/// Worlds with callbacks are stepped island after island; here only that each is called once a step, to the same end.
 #[test]
-fn what_a_callback_changes_is_seen_by_the_islands_after_it() {
+fn worlds_with_callbacks_end_alike() {
     let run = |threads: usize| {
         let mut world = scene();
         world.set_threads(threads);
