@@ -37,6 +37,8 @@ pub const NO_FRICTION_INDEX: i32 = -1;
 
 /// One scalar constraint between two bodies, or a body and the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
+// The Jacobian's twelve numbers one after the other.
+#[repr(C)]
 pub struct Row {
     /// Jacobian of the first body's linear velocity.
     pub linear1: Vec3,

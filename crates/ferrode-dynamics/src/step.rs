@@ -192,8 +192,7 @@ impl World {
         report.clear();
         self.timing.begin();
         let mut stepping = self.scratch.stepping.take().unwrap_or_default();
-        self.quarantine_unusable_bodies(report);
-        self.auto_disable_bodies(h);
+        self.judge_bodies(h, report);
         self.find_islands(&mut stepping.islands);
         match stepper {
             Stepper::Direct => self.step_direct(h, &mut stepping, moved.observer, report),
@@ -229,7 +228,9 @@ impl World {
             let works = &mut works[..at_once.min(islands.ends.len() - first)];
             for (i, work) in works.iter_mut().enumerate() {
                 let (bodies, joints) = islands.of(first + i);
-                match self.survivors(bodies, joints) {
+                // Without an observer nobody can have destroyed any.
+                let survivors = if moved.is_some() { self.survivors(bodies, joints) } else { None };
+                match survivors {
                     Some((bodies, joints)) => self.gather(&bodies, &joints, &mut work.island),
                     None => self.gather(bodies, joints, &mut work.island),
                 }
@@ -311,30 +312,25 @@ impl World {
         }
     }
 
-    fn auto_disable_bodies(&mut self, h: f64) {
-        let mut index = self.body_list.first;
-        while index != crate::arena::NIL {
-            let body = self.bodies.at_mut(index);
-            body.update_auto_disable(h);
-            index = body.next;
-        }
-    }
-
-    /// Takes bodies out whose state or gathered force is not finite, before they spoil their islands.
-    pub(crate) fn quarantine_unusable_bodies(&mut self, report: &mut StepReport) {
+    /// Takes bodies out whose state or gathered force is not finite, before they spoil their islands, and disables idle ones.
+    pub(crate) fn judge_bodies(&mut self, h: f64, report: &mut StepReport) {
         let mut index = self.body_list.first;
         while index != crate::arena::NIL {
             let body = self.bodies.at_mut(index);
             let next = body.next;
-            if body.enabled && !body.quarantined && !body.is_finite() {
+            let usable = !body.enabled || body.quarantined || body.is_finite();
+            if !usable {
                 body.quarantine(None);
+            }
+            body.update_auto_disable(h);
+            if !usable {
                 report.quarantined.push(self.body_key(index));
             }
             index = next;
         }
     }
 
-    /// The same, of bodies that may be awake.
+    /// Takes bodies out whose state or gathered force is not finite, of those that may be awake.
     pub(crate) fn quarantine_unusable_of_roll(&mut self, report: &mut StepReport) {
         for slot in self.roll.slots() {
             let Some(body) = self.bodies.get_mut(slot) else { continue };

@@ -26,6 +26,15 @@ pub(crate) struct FreeMotion {
     angular: Vec3,
 }
 
+impl FreeMotion {
+    /// The linear part, then the angular one.
+    #[inline(always)]
+    pub(crate) fn to_array(self) -> [f64; 6] {
+        let ([a, b, c], [d, e, f]) = (self.linear.to_array(), self.angular.to_array());
+        [a, b, c, d, e, f]
+    }
+}
+
 pub(crate) fn free_motions(bodies: &[SolverBody], fps: f64, out: &mut Vec<FreeMotion>) {
     out.clear();
     out.extend(bodies.iter().map(|b| FreeMotion {

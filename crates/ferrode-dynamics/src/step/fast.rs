@@ -64,8 +64,7 @@ impl World {
             works.push(IslandWork::default());
         }
         let island = &mut works[0].island;
-        self.quarantine_unusable_bodies(&mut report);
-        self.auto_disable_bodies(h);
+        self.judge_bodies(h, &mut report);
         work.body_seen.clear();
         work.body_seen.resize(self.bodies.capacity(), false);
         work.joint_seen.clear();

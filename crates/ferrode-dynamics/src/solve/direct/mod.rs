@@ -10,6 +10,7 @@ mod cone;
 mod dense;
 mod project;
 mod sparse;
+mod twelve;
 mod warm;
 
 use super::{FreeMotion, Solved, free_motions, right_hand_side};
@@ -17,7 +18,9 @@ use crate::report::{DirectMethod, IslandSolve};
 use crate::rows::{NO_FRICTION_INDEX, Row};
 use crate::step::{Island, JointSpan, SolverBody};
 use ferrode_math::Vec3;
+use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 pub(crate) use project::{Displacement, keep_rigid};
+use twelve::{Six, Twelve};
 use warm::WarmStart;
 
 /// What bounds the friction of contacts whose bounds hang on the normal force.
@@ -108,7 +111,10 @@ pub(crate) struct IslandWork {
 struct Memory {
     free: Vec<FreeMotion>,
     system: RowSystem,
+    /// For the dense method.
     spans: SpansByBody,
+    /// The rows' forces and torques on each body.
+    forces: Vec<Six>,
     dense: dense::Workspace,
     sparse: sparse::Workspace,
     cone: cone::Workspace,
@@ -122,6 +128,8 @@ struct RowSystem {
     lo: Vec<f64>,
     hi: Vec<f64>,
     findex: Vec<i32>,
+    /// The bodies' free motions.
+    free: Vec<Six>,
 }
 
 /// Which spans act on each body, and on which side: `starts[b]..starts[b + 1]` in `at_body`.
@@ -173,13 +181,12 @@ impl IslandWork {
         let fps = 1.0 / h;
         free_motions(&island.bodies, fps, &mut memory.free);
         memory.system.load(island, fps, &memory.free);
-        memory.spans.list(island);
         let problem = Problem { settings, number, warm: &past.warm };
         *solved = solve_boxed(island, problem, Start::Step, memory, report);
         if settings.friction == FrictionLaw::Cone && memory.cone.find(island) {
             *solved = solve_cone(island, fps, problem, memory, report);
         }
-        sum_forces(island, &memory.spans);
+        sum_forces(island, &mut memory.forces);
     }
 
     /// Keeps what the next step can begin from.
@@ -218,6 +225,7 @@ fn solve_boxed(
     let dense = island.rows.len() < settings.dense_rows
         || (settings.dense_rows > 0 && memory.system.is_small_figure(island.rows.len()));
     if dense {
+        memory.spans.list(island);
         let solved = dense::solve(island, &memory.system, &memory.spans, &mut memory.dense, report);
         if solved == Solved::Completely {
             return solved;
@@ -296,19 +304,45 @@ impl RowSystem {
             v.resize(m, 0.0);
         }
         self.findex.resize(m, -1);
+        self.free.clear();
+        self.free.extend(free.iter().map(|motion| motion.to_array()));
+        dispatch_quads(LoadRows { system: self, island, fps });
+    }
+}
+
+struct LoadRows<'a> {
+    system: &'a mut RowSystem,
+    island: &'a Island,
+    fps: f64,
+}
+
+impl QuadKernel for LoadRows<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<Q: Quad>(self) {
+        let Self { system: RowSystem { rhs, sigma, lo, hi, findex, free }, island, fps } = self;
         for span in &island.spans {
-            let range = span.first..span.first + span.count.rows;
-            let bounds = self.lo[range.clone()].iter_mut().zip(&mut self.hi[range.clone()]);
-            let numbers = self.rhs[range.clone()].iter_mut().zip(&mut self.sigma[range.clone()]);
-            let out = bounds.zip(numbers).zip(&mut self.findex[range.clone()]);
-            for (row, (((lo, hi), (rhs, sigma)), findex)) in island.rows[range].iter().zip(out) {
-                *rhs = right_hand_side(row, span, fps, free);
-                *sigma = row.cfm * fps;
-                (*lo, *hi) = (row.lo, row.hi);
-                *findex = match row.friction_index {
-                    NO_FRICTION_INDEX => -1,
-                    local => span.first as i32 + local,
-                };
+            let motion = Twelve::<Q>::of_bodies(free, span.bodies);
+            let end = span.first + span.count.rows;
+            let mut first = span.first;
+            while first < end {
+                let four = first..end.min(first + 4);
+                let n = four.len();
+                let rows = &island.rows[four.clone()][..n];
+                let (rhs, sigma) = (&mut rhs[four.clone()][..n], &mut sigma[four.clone()][..n]);
+                let (lo, hi) = (&mut lo[four.clone()][..n], &mut hi[four.clone()][..n]);
+                let findex = &mut findex[four][..n];
+                let products = motion.times_rows(rows);
+                for i in 0..n {
+                    let row = &rows[i];
+                    rhs[i] = row.c * fps - products[i & 3];
+                    sigma[i] = row.cfm * fps;
+                    (lo[i], hi[i]) = (row.lo, row.hi);
+                    let local = row.friction_index;
+                    findex[i] = if local == NO_FRICTION_INDEX { -1 } else { span.first as i32 + local };
+                }
+                first += 4;
             }
         }
     }
@@ -342,26 +376,41 @@ impl SpansByBody {
     }
 }
 
+#[inline(always)]
 fn jacobian(row: &Row, side: u32) -> (Vec3, Vec3) {
     if side == 0 { (row.linear1, row.angular1) } else { (row.linear2, row.angular2) }
 }
 
 /// Adds the constraint forces Jᵀλ to all other forces of an island's bodies.
-fn sum_forces(island: &mut Island, spans: &SpansByBody) {
-    for body in 0..island.bodies.len() {
-        let (mut force, mut torque) = (Vec3::ZERO, Vec3::ZERO);
-        for (span, side) in &spans.at_body[spans.starts[body]..spans.starts[body + 1]] {
-            let span = &island.spans[*span as usize];
+fn sum_forces(island: &mut Island, forces: &mut Vec<Six>) {
+    forces.clear();
+    forces.resize(island.bodies.len(), [0.0; 6]);
+    dispatch_quads(SumForces { island, forces });
+    for (body, [fx, fy, fz, tx, ty, tz]) in island.bodies.iter_mut().zip(forces) {
+        body.force = Vec3::new(*fx, *fy, *fz) + body.force;
+        body.torque = Vec3::new(*tx, *ty, *tz) + body.torque;
+    }
+}
+
+struct SumForces<'a> {
+    island: &'a Island,
+    forces: &'a mut [Six],
+}
+
+impl QuadKernel for SumForces<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<Q: Quad>(self) {
+        let Self { island, forces } = self;
+        for span in &island.spans {
+            let mut sum = Twelve::<Q>::of_bodies(forces, span.bodies);
             let range = span.first..span.first + span.count.rows;
             for (row, lambda) in island.rows[range.clone()].iter().zip(&island.lambda[range]) {
-                let (l, a) = jacobian(row, *side);
-                force += l * *lambda;
-                torque += a * *lambda;
+                sum = sum.plus(*lambda, Twelve::of_row(row));
             }
+            sum.put(forces, span.bodies);
         }
-        let b = &mut island.bodies[body];
-        b.force = force + b.force;
-        b.torque = torque + b.torque;
     }
 }
 

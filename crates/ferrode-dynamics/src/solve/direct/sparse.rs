@@ -2,6 +2,7 @@
 //!
 //! With M⁻¹ = C Cᵀ per body (C: the root of the inverse mass, and the Cholesky factor of the inverse inertia) a row's Jacobian becomes J C.
 
+use super::twelve::Root;
 use super::warm::{Expected, Key, WarmStart};
 use super::{Problem, RowSystem, Start};
 use crate::arena::NIL;
@@ -13,12 +14,14 @@ use ferrode_lcp::{
     NO_SPARSE_BODY, PivotingOptions, PivotingWorkspace, RowBlock, RowState, ScaledRow, SparseLcp,
     solve_pivoting,
 };
+use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 use ferrode_math::{Mat3, Vec3};
 
 /// Memory of the method.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Workspace {
-    scale: Vec<Scale>,
+    /// C of each body.
+    roots: Vec<Root>,
     blocks: Vec<RowBlock>,
     jacobian: Vec<ScaledRow>,
     states: Vec<[Option<RowState>; 2]>,
@@ -29,42 +32,17 @@ pub(super) struct Workspace {
 }
 
 /// C of a body.
-#[derive(Clone, Copy, Debug)]
-struct Scale {
-    linear: f64,
-    /// Lower triangle, by rows: (0,0), (1,0), (1,1), (2,0), (2,1), (2,2).
-    angular: [f64; 6],
-}
-
-impl Scale {
-    const IMMOVABLE: Self = Self { linear: 0.0, angular: [0.0; 6] };
-
-    fn new(inv_mass: f64, inv_inertia: &Mat3) -> Self {
-        let a = &inv_inertia.rows;
-        // A direction without inverse inertia gives a column of zeros.
-        let root = |x: f64| if x > 0.0 { x.sqrt() } else { 0.0 };
-        let over = |x: f64, d: f64| if d > 0.0 { x / d } else { 0.0 };
-        let l00 = root(a[0][0]);
-        let (l10, l20) = (over(a[1][0], l00), over(a[2][0], l00));
-        let l11 = root(a[1][1] - l10 * l10);
-        let l21 = over(a[2][1] - l20 * l10, l11);
-        let l22 = root((a[2][2] - l20 * l20) - l21 * l21);
-        Self { linear: root(inv_mass), angular: [l00, l10, l11, l20, l21, l22] }
-    }
-
-    /// J C.
-    #[inline(always)]
-    fn apply(&self, linear: Vec3, angular: Vec3) -> [f64; 6] {
-        let l = &self.angular;
-        [
-            linear.x * self.linear,
-            linear.y * self.linear,
-            linear.z * self.linear,
-            (l[0] * angular.x + l[1] * angular.y) + l[3] * angular.z,
-            l[2] * angular.y + l[4] * angular.z,
-            l[5] * angular.z,
-        ]
-    }
+fn root(inv_mass: f64, inv_inertia: &Mat3) -> Root {
+    let a = &inv_inertia.rows;
+    // A direction without inverse inertia gives a column of zeros.
+    let root = |x: f64| if x > 0.0 { x.sqrt() } else { 0.0 };
+    let over = |x: f64, d: f64| if d > 0.0 { x / d } else { 0.0 };
+    let l00 = root(a[0][0]);
+    let (l10, l20) = (over(a[1][0], l00), over(a[2][0], l00));
+    let l11 = root(a[1][1] - l10 * l10);
+    let l21 = over(a[2][1] - l20 * l10, l11);
+    let l22 = root((a[2][2] - l20 * l20) - l21 * l21);
+    Root::new(root(inv_mass), [l00, l10, l11, l20, l21, l22])
 }
 
 /// Finds the forces of an island's rows.
@@ -126,23 +104,18 @@ pub(super) fn solve(
 
 impl Workspace {
     fn load(&mut self, island: &Island) {
-        self.scale.clear();
-        self.scale.extend(island.bodies.iter().map(|b| Scale::new(b.inv_mass, &b.inv_inertia)));
+        self.roots.clear();
+        self.roots.extend(island.bodies.iter().map(|b| root(b.inv_mass, &b.inv_inertia)));
         self.blocks.clear();
-        self.jacobian.resize(island.rows.len(), [[0.0; 6]; 2]);
         for span in &island.spans {
-            let scales = span.bodies.map(|place| {
-                let scale = self.scale.get(place as usize);
-                scale.filter(|s| s.linear != 0.0 || s.angular != [0.0; 6])
+            let bodies = span.bodies.map(|place| {
+                let moves = self.roots.get(place as usize).is_some_and(|root| !root.is_zero());
+                if moves { place } else { NO_SPARSE_BODY }
             });
-            let bodies = [0, 1].map(|s| if scales[s].is_some() { span.bodies[s] } else { NO_SPARSE_BODY });
             self.blocks.push(RowBlock { bodies, first: span.first as u32, count: span.count.rows as u32 });
-            let [a, b] = scales.map(|scale| scale.unwrap_or(&Scale::IMMOVABLE));
-            let range = span.first..span.first + span.count.rows;
-            for (out, row) in self.jacobian[range.clone()].iter_mut().zip(&island.rows[range]) {
-                *out = [a.apply(row.linear1, row.angular1), b.apply(row.linear2, row.angular2)];
-            }
         }
+        self.jacobian.resize(island.rows.len(), [[0.0; 6]; 2]);
+        dispatch_quads(Scale { roots: &self.roots, island, jacobian: &mut self.jacobian });
     }
 
     /// Asks what the rows did in the step before.
@@ -178,6 +151,33 @@ impl Workspace {
     }
 }
 
+/// Scales the rows.
+struct Scale<'a> {
+    roots: &'a [Root],
+    island: &'a Island,
+    jacobian: &'a mut [ScaledRow],
+}
+
+impl QuadKernel for Scale<'_> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run<Q: Quad>(self) {
+        let Self { roots, island, jacobian } = self;
+        let immovable = Root::default();
+        for span in &island.spans {
+            let [a, b] = span.bodies;
+            let a = if let Some(root) = roots.get(a as usize) { root } else { &immovable };
+            let b = if let Some(root) = roots.get(b as usize) { root } else { &immovable };
+            let range = span.first..span.first + span.count.rows;
+            for (out, row) in jacobian[range.clone()].iter_mut().zip(&island.rows[range]) {
+                a.apply::<Q>(row, 0, &mut out[0]);
+                b.apply::<Q>(row, 1, &mut out[1]);
+            }
+        }
+    }
+}
+
 /// What names the rows of a span from step to step: the joint, or for a contact, which programs make anew each step, the bodies and
 /// the point in the first one's frame. None if none of the rows has a bound.
 fn key(island: &Island, span: &JointSpan) -> Option<(Key, Vec3)> {
@@ -185,7 +185,8 @@ fn key(island: &Island, span: &JointSpan) -> Option<(Key, Vec3)> {
         return None;
     }
     let rows = &island.rows[span.first..span.first + span.count.rows];
-    if rows.iter().all(|row| row.lo == f64::NEG_INFINITY && row.hi == f64::INFINITY) {
+    // From the last row on: a joint's bounded ones come last.
+    if rows.iter().rev().all(|row| row.lo == f64::NEG_INFINITY && row.hi == f64::INFINITY) {
         return None;
     }
     let first = rows.first()?;

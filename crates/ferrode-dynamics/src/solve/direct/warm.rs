@@ -32,6 +32,8 @@ pub(super) struct WarmStart {
     next: Vec<Entry>,
     /// The entries of `last` by key, and then by arrival.
     sorted: Vec<(Key, u32)>,
+    /// Whether an entry of `next` has another key than that of `last` in its place.
+    new_order: bool,
 }
 
 /// Where in a list who asks for all spans of an island expects the next one: mechanisms ask in the same order in each step.
@@ -41,16 +43,22 @@ pub(super) struct Expected(Option<usize>);
 impl WarmStart {
     pub fn begin_step(&mut self) {
         self.next.clear();
+        self.new_order = false;
     }
 
     pub fn end_step(&mut self) {
+        let same_order = !self.new_order && self.next.len() == self.last.len();
         core::mem::swap(&mut self.last, &mut self.next);
+        if same_order {
+            return;
+        }
         self.sorted.clear();
         self.sorted.extend(self.last.iter().enumerate().map(|(i, entry)| (entry.key, i as u32)));
         self.sorted.sort_unstable();
     }
 
     pub fn add(&mut self, key: Key, point: Vec3, states: States) {
+        self.new_order |= self.last.get(self.next.len()).is_none_or(|entry| entry.key != key);
         self.next.push(Entry { key, point, states });
     }
 
@@ -126,5 +134,22 @@ mod tests {
         warm.begin_step();
         warm.end_step();
         assert_eq!(warm.find(key(5), Vec3::ZERO, &mut expected), None);
+    }
+
+    #[test]
+    fn a_new_order_and_new_states_are_seen() {
+        let key = |joint| Key { bodies: [u32::MAX; 2], joint };
+        let states = |s| [[Some(s); 2]; 8];
+        let (free, lower) = (states(RowState::Free), states(RowState::Lower));
+        let mut warm = WarmStart::default();
+        for (order, of_five) in [([5, 3], free), ([5, 3], lower), ([3, 5], free), ([3, 7], free)] {
+            warm.begin_step();
+            for joint in order {
+                warm.add(key(joint), Vec3::ZERO, if joint == 5 { of_five } else { states(RowState::Upper) });
+            }
+            warm.end_step();
+            let found = warm.find(key(5), Vec3::ZERO, &mut Expected::default());
+            assert_eq!(found, order.contains(&5).then_some(of_five));
+        }
     }
 }
