@@ -24,11 +24,12 @@ mod canonical;
 mod fallback;
 mod interior;
 pub(crate) mod line;
+mod residuals;
 
 use crate::error::LcpError;
 use crate::problem::check_row;
-use crate::residual::row_residual;
 use crate::sparse::kernels::Six;
+use crate::sparse::rows::largest;
 use crate::sparse::symbolic::{Symbolic, SymbolicCache};
 use crate::sparse::system::{Pass, System};
 use crate::sparse::{NO_SPARSE_BODY, RowBlock, ScaledRow};
@@ -135,6 +136,8 @@ pub struct PivotingWorkspace {
     system: System,
     lo: Vec<f64>,
     hi: Vec<f64>,
+    /// The rows that may have a bound in force. All others are always free.
+    bounded: Vec<u32>,
     state: Vec<RowState>,
     /// The states of which the factor is.
     factored: Vec<RowState>,
@@ -147,6 +150,7 @@ pub struct PivotingWorkspace {
     best_jy: Vec<f64>,
     jdy: Vec<f64>,
     best_lambda: Vec<f64>,
+    residuals: Vec<f64>,
     interior: interior::Interior,
     fallback: fallback::Dense,
 }
@@ -194,7 +198,7 @@ pub fn solve_pivoting(
             work: workspace,
             report: PivotingReport::default(),
             largest: 0.0,
-            bounded: true,
+            friction: true,
             pass: Pass::Own,
         }
         .run()
@@ -234,6 +238,11 @@ fn check(p: &SparseLcp<'_>) -> Result<(), LcpError> {
     if next != m {
         return Err(LcpError::Size { what: "blocks", need: m, got: next });
     }
+    let rows = p.lo[..m].iter().zip(&p.hi[..m]).zip(&p.findex[..m]);
+    let plain = rows.fold(true, |plain, ((lo, hi), f)| plain & (*f < 0) & (*lo <= 0.0) & (*hi >= 0.0));
+    if plain {
+        return Ok(());
+    }
     (0..m).try_for_each(|row| check_row(row, m, p.lo[row], p.hi[row], p.findex[row]))
 }
 
@@ -246,8 +255,8 @@ struct Solve<'a, 'b> {
     report: PivotingReport,
     /// The largest force of the last solution.
     largest: f64,
-    /// Whether any row has a bound.
-    bounded: bool,
+    /// Whether any row has a friction index.
+    friction: bool,
     /// Whether the problem is solved as it is or with the CFM that rows were raised to.
     pass: Pass,
 }
@@ -258,20 +267,13 @@ impl Solve<'_, '_> {
         self.work.system.load(self.p.jacobian, self.p.sigma, self.p.rhs, self.shape);
         self.work.factored.clear();
         self.report.factor_blocks = self.shape.blocks();
-        let friction = self.p.findex[..m].iter().any(|f| *f >= 0);
+        self.friction = self.p.findex[..m].iter().any(|f| *f >= 0);
         self.bounds_without_friction();
-        self.bounded =
-            (0..m).any(|row| self.work.lo[row] > f64::NEG_INFINITY || self.work.hi[row] < f64::INFINITY);
-        if friction {
+        if self.friction {
             self.phase(0);
             self.freeze_friction();
-            self.phase(1);
-        } else {
-            self.phase(1);
-            for states in self.p.states[..m].iter_mut() {
-                states[0] = states[1];
-            }
         }
+        self.phase(1);
         self.p.x[..m].copy_from_slice(&self.work.system.lambda);
         self.report
     }
@@ -279,15 +281,21 @@ impl Solve<'_, '_> {
     fn bounds_without_friction(&mut self) {
         let m = self.p.jacobian.len();
         let Self { p, work, .. } = self;
-        work.lo.resize(m, 0.0);
-        work.hi.resize(m, 0.0);
-        let given = p.lo.iter().zip(p.hi).zip(p.findex).zip(&work.system.used_sigma);
-        for ((lo, hi), (((given_lo, given_hi), findex), sigma)) in
-            work.lo.iter_mut().zip(&mut work.hi).zip(given)
-        {
+        let PivotingWorkspace { lo, hi, bounded, system, .. } = &mut **work;
+        lo.clear();
+        lo.extend_from_slice(&p.lo[..m]);
+        hi.clear();
+        hi.extend_from_slice(&p.hi[..m]);
+        bounded.clear();
+        let rows = lo.iter_mut().zip(hi.iter_mut()).zip(p.findex.iter().zip(&system.used_sigma));
+        for (row, ((lo, hi), (findex, sigma))) in rows.enumerate() {
             // An empty row without CFM takes no force.
-            let none = *findex >= 0 || *sigma <= 0.0;
-            (*lo, *hi) = if none { (0.0, 0.0) } else { (*given_lo, *given_hi) };
+            if *findex >= 0 || *sigma <= 0.0 {
+                (*lo, *hi) = (0.0, 0.0);
+            }
+            if *lo > f64::NEG_INFINITY || *hi < f64::INFINITY {
+                bounded.push(row as u32);
+            }
         }
     }
 
@@ -318,27 +326,30 @@ impl Solve<'_, '_> {
         if !self.report.certified() || !solved {
             self.fall_back();
         }
-        for (states, state) in self.p.states[..m].iter_mut().zip(&self.work.state) {
-            states[which] = Some(*state);
+        let states = self.p.states[..m].iter_mut().zip(&self.work.state);
+        if self.friction {
+            states.for_each(|(states, state)| states[which] = Some(*state));
+        } else {
+            states.for_each(|(states, state)| *states = [Some(*state); 2]);
         }
     }
 
     fn guess(&mut self, which: usize) {
         let Self { p, work, .. } = self;
-        let s = &work.system;
-        work.state.resize(p.jacobian.len(), RowState::Free);
-        let rows = work.lo.iter().zip(&work.hi).zip(s.rhs.iter().zip(&s.diagonal)).zip(p.states.iter());
-        for (out, (((lo, hi), (rhs, diagonal)), guess)) in work.state.iter_mut().zip(rows) {
-            if *lo == f64::NEG_INFINITY && *hi == f64::INFINITY {
-                *out = RowState::Free;
+        let PivotingWorkspace { system: s, state, lo, hi, bounded, .. } = &mut **work;
+        state.clear();
+        state.resize(p.jacobian.len(), RowState::Free);
+        for row in bounded.iter().map(|row| *row as usize) {
+            let (lo, hi) = (lo[row], hi[row]);
+            if lo == f64::NEG_INFINITY && hi == f64::INFINITY {
                 continue;
             }
-            let state = guess[which].unwrap_or_else(|| {
+            let guess = p.states[row][which].unwrap_or_else(|| {
                 // A row that asks for nothing carries load, as those of a stack at rest do.
-                let alone = rhs / diagonal;
-                if alone == 0.0 { RowState::Free } else { state_of(alone, *lo, *hi) }
+                let alone = s.rhs[row] / s.diagonal[row];
+                if alone == 0.0 { RowState::Free } else { state_of(alone, lo, hi) }
             });
-            *out = possible(state, *lo, *hi);
+            state[row] = possible(guess, lo, hi);
         }
     }
 
@@ -446,9 +457,9 @@ impl Solve<'_, '_> {
     /// Factors at the present states and solves, `J y` included, without refinement.
     fn solve_set(&mut self) {
         let Self { p, shape, work, report, .. } = self;
-        let PivotingWorkspace { system, state, factored, lo, hi, .. } = &mut **work;
+        let PivotingWorkspace { system, state, factored, lo, hi, bounded, .. } = &mut **work;
         let mut changed = factored.len() != state.len();
-        if !changed {
+        if !changed && factored != state {
             for (i, block) in p.blocks.iter().enumerate() {
                 let free = |s: &RowState| *s == RowState::Free;
                 if block.range().any(|row| free(&state[row]) != free(&factored[row])) {
@@ -462,16 +473,16 @@ impl Solve<'_, '_> {
             factored.clone_from(state);
             report.factorisations += 1;
         }
-        let bounds = lo.iter().zip(hi.iter());
-        for ((state, lambda), (lo, hi)) in state.iter().zip(&mut system.lambda).zip(bounds) {
-            match state {
-                RowState::Free => *lambda = 0.0,
-                RowState::Lower => *lambda = *lo,
-                RowState::Upper => *lambda = *hi,
+        system.lambda.fill(0.0);
+        for row in bounded.iter().map(|row| *row as usize) {
+            match state[row] {
+                RowState::Free => {}
+                RowState::Lower => system.lambda[row] = lo[row],
+                RowState::Upper => system.lambda[row] = hi[row],
             }
         }
         self.largest = system.solve(p.blocks, p.jacobian, state, shape);
-        if self.bounded {
+        if !bounded.is_empty() {
             system.product(p.blocks, p.jacobian, shape);
         }
     }
@@ -480,30 +491,30 @@ impl Solve<'_, '_> {
     fn refine_set(&mut self) {
         let Self { p, shape, work, pass, .. } = self;
         work.system.refine_roughly(p.blocks, p.jacobian, &work.state, shape, *pass);
-        if self.bounded {
+        if !work.bounded.is_empty() {
             work.system.product(p.blocks, p.jacobian, shape);
         }
     }
 
     /// Finds the rows whose state is wrong by more than so many parts of the largest force, and proposes better ones. Returns their number.
     fn propose(&mut self, tolerance: f64) -> usize {
-        if !self.bounded {
+        let tolerance = tolerance * (1.0 + self.largest);
+        let PivotingWorkspace { system: s, state, proposed, lo, hi, bounded, .. } = &mut *self.work;
+        if bounded.is_empty() {
             return 0;
         }
-        let tolerance = tolerance * (1.0 + self.largest);
-        let PivotingWorkspace { system: s, state, proposed, lo, hi, .. } = &mut *self.work;
         proposed.clone_from(state);
         let sigma = if self.pass == Pass::Own { &s.sigma } else { &s.used_sigma };
         let slack = |row: usize| s.jy[row] + sigma[row] * s.lambda[row] - s.rhs[row];
         let least = |row: usize| tolerance * s.diagonal[row] + NOISE * s.rhs[row].abs();
         let mut wrong = 0;
-        let rows = s.lambda.iter().zip(lo.iter().zip(hi.iter()));
-        for (row, (state, (lambda, (lo, hi)))) in proposed.iter_mut().zip(rows).enumerate() {
+        for row in bounded.iter().map(|row| *row as usize) {
+            let (state, lambda, lo, hi) = (&mut proposed[row], s.lambda[row], lo[row], hi[row]);
             let better = match *state {
-                RowState::Free if *lambda >= lo - tolerance && *lambda <= hi + tolerance => continue,
+                RowState::Free if lambda >= lo - tolerance && lambda <= hi + tolerance => continue,
                 _ if lo == hi => continue,
-                RowState::Free if *lambda < lo - tolerance => RowState::Lower,
-                RowState::Free if *lambda > hi + tolerance => RowState::Upper,
+                RowState::Free if lambda < lo - tolerance => RowState::Lower,
+                RowState::Free if lambda > hi + tolerance => RowState::Upper,
                 RowState::Lower if slack(row) < -least(row) => RowState::Free,
                 RowState::Upper if slack(row) > least(row) => RowState::Free,
                 _ => continue,
@@ -559,12 +570,13 @@ impl Solve<'_, '_> {
 
     /// Brings forces that rounding left outside their bounds inside.
     fn clamp(&mut self) {
-        let PivotingWorkspace { system, lo, hi, .. } = &mut *self.work;
-        for (lambda, (lo, hi)) in system.lambda.iter_mut().zip(lo.iter().zip(hi.iter())) {
-            if *lambda < *lo {
-                *lambda = *lo;
-            } else if *lambda > *hi {
-                *lambda = *hi;
+        let PivotingWorkspace { system, lo, hi, bounded, .. } = &mut *self.work;
+        for row in bounded.iter().map(|row| *row as usize) {
+            let lambda = &mut system.lambda[row];
+            if *lambda < lo[row] {
+                *lambda = lo[row];
+            } else if *lambda > hi[row] {
+                *lambda = hi[row];
             }
         }
     }
@@ -572,24 +584,11 @@ impl Solve<'_, '_> {
     /// The natural residual of the forces as they are, for the problem as it was given.
     fn measure(&mut self) {
         let Self { p, work, report, .. } = self;
-        let PivotingWorkspace { system, lo, hi, .. } = &mut **work;
+        let PivotingWorkspace { system, lo, hi, residuals, .. } = &mut **work;
         system.accelerations(p.blocks, p.jacobian);
-        (report.residual, report.largest) = (0.0, 0.0);
-        let rows = system.lambda.iter().zip(&system.jy).zip(system.sigma.iter().zip(p.rhs));
-        let rows = rows.zip(system.diagonal.iter().zip(lo.iter().zip(hi.iter())));
-        for (((lambda, jy), (sigma, rhs)), (diagonal, (lo, hi))) in rows {
-            let w = jy + sigma * lambda - rhs;
-            let residual = row_residual(*lambda, w, *diagonal, *lo, *hi);
-            if residual > report.residual || residual.is_nan() {
-                report.residual = residual;
-            }
-            if lambda.abs() > report.largest {
-                report.largest = lambda.abs();
-            }
-            if residual.is_nan() {
-                break;
-            }
-        }
+        residuals::find(system, p.rhs, Bounds { lo, hi }, residuals);
+        report.residual = largest(residuals);
+        report.largest = largest(&system.lambda);
     }
 
     /// Tries the dense method, and takes its answer if it is better.

@@ -7,6 +7,7 @@
 use crate::error::{LcpError, check_len, check_matrix};
 
 /// The natural residual of one row.
+#[inline(always)]
 #[must_use]
 pub fn row_residual(x: f64, w: f64, diagonal: f64, lo: f64, hi: f64) -> f64 {
     let moved = if w == 0.0 { x } else { x - w / diagonal };

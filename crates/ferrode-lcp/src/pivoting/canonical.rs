@@ -13,14 +13,16 @@ const MOST_ROUNDS: u32 = 6;
 impl Solve<'_, '_> {
     /// Puts degenerate rows at their bound and solves once more, so that the way to the answer leaves no trace.
     pub(super) fn canonical(&mut self) {
-        self.work.accepted.clone_from(&self.work.state);
-        self.work.needed.clear();
-        self.work.needed.resize(self.work.state.len(), false);
-        if self.bounded && !self.put_at_bounds() {
-            // They would not go there.
-            self.work.state.clone_from(&self.work.accepted);
-            self.solve_set();
-            self.refine_set();
+        if !self.work.bounded.is_empty() {
+            self.work.accepted.clone_from(&self.work.state);
+            self.work.needed.clear();
+            self.work.needed.resize(self.work.state.len(), false);
+            if !self.put_at_bounds() {
+                // They would not go there.
+                self.work.state.clone_from(&self.work.accepted);
+                self.solve_set();
+                self.refine_set();
+            }
         }
         let Self { p, shape, work, pass, .. } = self;
         work.system.polish(p.blocks, p.jacobian, &work.state, shape, *pass);
@@ -29,19 +31,18 @@ impl Solve<'_, '_> {
     /// Puts rows at bounds until no free row is left there but those that must be free. Whether it came to an end.
     fn put_at_bounds(&mut self) -> bool {
         for _ in 0..MOST_ROUNDS {
-            let PivotingWorkspace { system, state, needed, lo, hi, .. } = &mut *self.work;
+            let PivotingWorkspace { system, state, needed, lo, hi, bounded, .. } = &mut *self.work;
             let close = DEGENERATE * (1.0 + self.largest);
             let mut degenerate = false;
-            let rows = state.iter_mut().zip(needed.iter());
-            let bounds = system.lambda.iter().zip(lo.iter().zip(hi.iter()));
-            for ((state, needed), (lambda, (lo, hi))) in rows.zip(bounds) {
-                if *state != RowState::Free || *needed {
+            for row in bounded.iter().map(|row| *row as usize) {
+                if state[row] != RowState::Free || needed[row] {
                     continue;
                 }
-                if lambda - lo < close {
-                    (*state, degenerate) = (RowState::Lower, true);
-                } else if hi - lambda < close {
-                    (*state, degenerate) = (RowState::Upper, true);
+                let lambda = system.lambda[row];
+                if lambda - lo[row] < close {
+                    (state[row], degenerate) = (RowState::Lower, true);
+                } else if hi[row] - lambda < close {
+                    (state[row], degenerate) = (RowState::Upper, true);
                 }
             }
             if !degenerate {

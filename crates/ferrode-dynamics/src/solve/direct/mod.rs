@@ -324,25 +324,23 @@ impl QuadKernel for LoadRows<'_> {
         let Self { system: RowSystem { rhs, sigma, lo, hi, findex, free }, island, fps } = self;
         for span in &island.spans {
             let motion = Twelve::<Q>::of_bodies(free, span.bodies);
-            let end = span.first + span.count.rows;
-            let mut first = span.first;
-            while first < end {
-                let four = first..end.min(first + 4);
-                let n = four.len();
-                let rows = &island.rows[four.clone()][..n];
-                let (rhs, sigma) = (&mut rhs[four.clone()][..n], &mut sigma[four.clone()][..n]);
-                let (lo, hi) = (&mut lo[four.clone()][..n], &mut hi[four.clone()][..n]);
-                let findex = &mut findex[four][..n];
+            let all = span.first..span.first + span.count.rows;
+            let n = all.len();
+            let rows = &island.rows[all.clone()];
+            let (rhs, sigma) = (&mut rhs[all.clone()], &mut sigma[all.clone()]);
+            let (lo, hi, findex) = (&mut lo[all.clone()], &mut hi[all.clone()], &mut findex[all]);
+            for (rows, rhs) in rows.chunks(4).zip(rhs.chunks_mut(4)) {
                 let products = motion.times_rows(rows);
-                for i in 0..n {
-                    let row = &rows[i];
-                    rhs[i] = row.c * fps - products[i & 3];
-                    sigma[i] = row.cfm * fps;
-                    (lo[i], hi[i]) = (row.lo, row.hi);
-                    let local = row.friction_index;
-                    findex[i] = if local == NO_FRICTION_INDEX { -1 } else { span.first as i32 + local };
+                for i in 0..rows.len().min(rhs.len()) {
+                    rhs[i] = rows[i].c * fps - products[i & 3];
                 }
-                first += 4;
+            }
+            let (sigma, lo, hi, findex) = (&mut sigma[..n], &mut lo[..n], &mut hi[..n], &mut findex[..n]);
+            for (i, row) in rows.iter().enumerate().take(n) {
+                sigma[i] = row.cfm * fps;
+                (lo[i], hi[i]) = (row.lo, row.hi);
+                let local = row.friction_index;
+                findex[i] = if local == NO_FRICTION_INDEX { -1 } else { span.first as i32 + local };
             }
         }
     }

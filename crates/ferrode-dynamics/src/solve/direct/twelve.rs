@@ -59,21 +59,20 @@ impl<Q: Quad> Twelve<Q> {
         Self([self.0[0] + a.0[0] * s, self.0[1] + a.0[1] * s, self.0[2] + a.0[2] * s])
     }
 
-    /// The products of all twelve numbers, to be summed.
+    /// The products with the numbers of a row, if there is one, to be summed.
     #[inline(always)]
-    fn terms(self, with: Self) -> Q {
-        (self.0[0] * with.0[0] + self.0[1] * with.0[1]) + self.0[2] * with.0[2]
+    fn terms(self, rows: &[Row], i: usize) -> Q {
+        let Some(row) = rows.get(i) else { return Q::splat(0.0) };
+        let row = Self::of_row(row);
+        (self.0[0] * row.0[0] + self.0[1] * row.0[1]) + self.0[2] * row.0[2]
     }
 
     /// The products with up to four rows.
     #[inline(always)]
     pub fn times_rows(self, rows: &[Row]) -> [f64; 4] {
-        let mut terms = [Q::splat(0.0); 4];
-        for (i, row) in rows.iter().enumerate() {
-            terms[i & 3] = self.terms(Self::of_row(row));
-        }
         let mut out = [0.0; 4];
-        Q::sums(terms).store(&mut out);
+        Q::sums([self.terms(rows, 0), self.terms(rows, 1), self.terms(rows, 2), self.terms(rows, 3)])
+            .store(&mut out);
         out
     }
 }
