@@ -298,6 +298,7 @@ impl Body {
     }
 
     /// Inertia tensor in the world frame.
+    #[inline]
     pub fn inertia_world(&self) -> Mat3 {
         self.frame.rotation * self.mass.inertia * self.frame.rotation.transpose()
     }

@@ -25,6 +25,7 @@ impl Body {
 /// That is one Newton-like step of the implicit Euler equation I (ω' − ω) + h ω' × L = 0, stable for any spin
 /// (C. Lacoursière, "Stabilizing gyroscopic forces in rigid multibody simulations", 2006). `inertia` is in the world
 /// frame, at the start of the step.
+#[inline(always)]
 pub(crate) fn torque(inertia: &Mat3, w: Vec3, h: f64) -> Vec3 {
     let momentum = *inertia * w;
     let implicit = *inertia - Mat3::cross(momentum * h);

@@ -16,6 +16,7 @@ use crate::solve::substep;
 use crate::timing::Phase;
 use crate::{Error, StepReport, World, gyroscopic, integrate};
 use ferrode_math::random::OdeRandom;
+use ferrode_math::simd::{Compute, compute_wide};
 use ferrode_math::stage::chunks;
 use ferrode_math::{Mat3, Vec3};
 
@@ -362,29 +363,28 @@ impl World {
         island.place.resize(self.bodies.capacity(), NIL);
         island.bodies.clear();
         island.spans.clear();
-        let mut take = |index: u32| {
-            if island.place[index as usize] == NIL {
-                island.place[index as usize] = island.bodies.len() as u32;
-                island.slots.push(index);
-                island.bodies.push(SolverBody::new(self.bodies.at(index)));
-            }
-        };
-        bodies.iter().for_each(|body| take(*body));
+        for (place, index) in bodies.iter().enumerate() {
+            island.place[*index as usize] = place as u32;
+        }
+        island.slots.extend_from_slice(bodies);
+        island.bodies.extend(bodies.iter().map(|index| SolverBody::new(self.bodies.at(*index))));
         island.movable = bodies.len();
         for joint in joints {
-            for node in self.joints.at(*joint).nodes {
-                if node.body != NIL && self.bodies.at(node.body).quarantined {
-                    take(node.body);
+            let ends = self.joints.at(*joint).nodes.map(|node| node.body);
+            for index in ends {
+                if index != NIL && island.place[index as usize] == NIL && self.bodies.at(index).quarantined {
+                    island.place[index as usize] = island.bodies.len() as u32;
+                    island.slots.push(index);
+                    island.bodies.push(SolverBody::new(self.bodies.at(index)));
                 }
             }
+            island.spans.push(JointSpan {
+                joint: *joint,
+                bodies: ends.map(|body| if body == NIL { NIL } else { island.place[body as usize] }),
+                first: 0,
+                count: RowCount::default(),
+            });
         }
-        let place = |body: u32| if body == NIL { NIL } else { island.place[body as usize] };
-        island.spans.extend(joints.iter().map(|joint| JointSpan {
-            joint: *joint,
-            bodies: self.joints.at(*joint).nodes.map(|node| place(node.body)),
-            first: 0,
-            count: RowCount::default(),
-        }));
     }
 
     fn apply_gravity(&self, island: &mut Island) {
@@ -401,14 +401,8 @@ impl World {
     }
 
     fn apply_gyroscopic_torques(&self, island: &mut Island, h: f64) {
-        for (index, solver_body) in island.slots[..island.movable].iter().zip(&mut island.bodies) {
-            let body = self.bodies.at(*index);
-            let velocity = solver_body.frame.angular_velocity;
-            if body.gyroscopic_mode && !body.is_kinematic() && velocity != Vec3::ZERO {
-                let inertia = body.inertia_world();
-                solver_body.torque += gyroscopic::torque(&inertia, velocity, h);
-            }
-        }
+        let bodies = island.slots[..island.movable].iter().zip(&mut island.bodies);
+        compute_wide(GyroscopicTorques { world: self, bodies, h });
     }
 
     /// Asks each joint for its rows; those without any drop out.
@@ -481,11 +475,7 @@ impl World {
         }
         for (index, solver_body) in bodies.iter().zip(&island.bodies) {
             // An observer may have destroyed the body.
-            if self.bodies.get(*index).is_none() {
-                continue;
-            }
-            let key = self.body_key(*index);
-            let body = self.bodies.at_mut(*index);
+            let Some(body) = self.bodies.get_mut(*index) else { continue };
             if !moved {
                 if stepper == Stepper::Direct {
                     body.advance_velocity(solver_body, h);
@@ -495,20 +485,50 @@ impl World {
             // What moved it, for callbacks to see: gravity and the forces of joints at stops are in it.
             body.force = solver_body.force;
             body.torque = solver_body.torque;
-            if let Some(moved) = body.moved.clone() {
-                moved(key, body);
+            if observer.is_some() || body.moved.is_some() {
+                let key = self.body_key(*index);
+                let body = self.bodies.at_mut(*index);
+                if let Some(moved) = body.moved.clone() {
+                    moved(key, body);
+                }
+                if let Some(observer) = &mut observer {
+                    observer(self, key);
+                }
+                if !self.contains_body(key) {
+                    continue;
+                }
             }
-            if let Some(observer) = &mut observer {
-                observer(self, key);
-            }
-            let Ok(body) = self.body_mut(key) else { continue };
+            self.roll.call(*index);
+            let body = self.bodies.at_mut(*index);
             let damping = body.damping;
             damping.apply(&mut body.frame.linear_velocity, &mut body.frame.angular_velocity);
             body.force = Vec3::ZERO;
             body.torque = Vec3::ZERO;
             if !body.is_finite() {
                 body.quarantine(Some(&solver_body.frame));
-                report.quarantined.push(key);
+                report.quarantined.push(self.body_key(*index));
+            }
+        }
+    }
+}
+
+struct GyroscopicTorques<'a, B> {
+    world: &'a World,
+    bodies: B,
+    h: f64,
+}
+
+impl<'a, B: Iterator<Item = (&'a u32, &'a mut SolverBody)>> Compute for GyroscopicTorques<'a, B> {
+    type Out = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (index, solver_body) in self.bodies {
+            let body = self.world.bodies.at(*index);
+            let velocity = solver_body.frame.angular_velocity;
+            if body.gyroscopic_mode && !body.is_kinematic() && velocity != Vec3::ZERO {
+                let inertia = body.inertia_world();
+                solver_body.torque += gyroscopic::torque(&inertia, velocity, self.h);
             }
         }
     }

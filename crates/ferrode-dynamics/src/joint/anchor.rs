@@ -56,11 +56,13 @@ impl Anchors {
     /// Three rows that hold the two points together, along x, y and z, with slots 0 … 2: the ball joint's.
     ///
     /// `erp` is the error reduction of these rows.
+    #[inline]
     pub fn write_rows(&self, ends: &Ends<'_>, ctx: &StepContext, erp: f64, rows: &mut [Row]) {
         self.write_rows_along([Vec3::X, Vec3::Y, Vec3::Z], [ctx.fps * erp; 3], ends, rows);
     }
 
     /// As [`Anchors::write_rows`], along the given unit directions, each with its own factor from error to velocity.
+    #[inline(always)]
     pub fn write_rows_along<const N: usize>(
         &self,
         directions: [Vec3; N],

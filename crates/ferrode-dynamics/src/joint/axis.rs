@@ -32,6 +32,7 @@ pub(crate) fn reset_axes(ends: &Ends<'_>, first: Vec3) -> [Vec3; 2] {
 
 /// Two rows, with slots `slot` and `slot + 1`, that turn the world axis `b` of the second body onto the unit axis `a` of
 /// the first; `k` is the factor from error to velocity.
+#[inline]
 pub(crate) fn write_alignment_rows(a: Vec3, b: Vec3, k: f64, two_bodies: bool, rows: &mut [Row], slot: u8) {
     let (p, q) = plane_space(a);
     let error = a.cross(b);

@@ -324,23 +324,31 @@ impl QuadKernel for LoadRows<'_> {
         let Self { system: RowSystem { rhs, sigma, lo, hi, findex, free }, island, fps } = self;
         for span in &island.spans {
             let motion = Twelve::<Q>::of_bodies(free, span.bodies);
-            let all = span.first..span.first + span.count.rows;
-            let n = all.len();
-            let rows = &island.rows[all.clone()];
-            let (rhs, sigma) = (&mut rhs[all.clone()], &mut sigma[all.clone()]);
-            let (lo, hi, findex) = (&mut lo[all.clone()], &mut hi[all.clone()], &mut findex[all]);
-            for (rows, rhs) in rows.chunks(4).zip(rhs.chunks_mut(4)) {
+            let range = span.first..span.first + span.count.rows;
+            for (rows, rhs) in island.rows[range.clone()].chunks(4).zip(rhs[range].chunks_mut(4)) {
                 let products = motion.times_rows(rows);
                 for i in 0..rows.len().min(rhs.len()) {
                     rhs[i] = rows[i].c * fps - products[i & 3];
                 }
             }
-            let (sigma, lo, hi, findex) = (&mut sigma[..n], &mut lo[..n], &mut hi[..n], &mut findex[..n]);
-            for (i, row) in rows.iter().enumerate().take(n) {
-                sigma[i] = row.cfm * fps;
-                (lo[i], hi[i]) = (row.lo, row.hi);
-                let local = row.friction_index;
-                findex[i] = if local == NO_FRICTION_INDEX { -1 } else { span.first as i32 + local };
+        }
+        let m = island.rows.len();
+        let (sigma, lo, hi, findex) = (&mut sigma[..m], &mut lo[..m], &mut hi[..m], &mut findex[..m]);
+        let mut friction = false;
+        for (i, row) in island.rows.iter().enumerate() {
+            sigma[i] = row.cfm * fps;
+            (lo[i], hi[i]) = (row.lo, row.hi);
+            findex[i] = row.friction_index;
+            friction |= row.friction_index != NO_FRICTION_INDEX;
+        }
+        if !friction {
+            return;
+        }
+        for span in &island.spans {
+            for local in &mut findex[span.first..span.first + span.count.rows] {
+                if *local != NO_FRICTION_INDEX {
+                    *local += span.first as i32;
+                }
             }
         }
     }

@@ -26,6 +26,8 @@ pub(super) struct Workspace {
     jacobian: Vec<ScaledRow>,
     states: Vec<[Option<RowState>; 2]>,
     pivoting: PivotingWorkspace,
+    /// What names the rows of each span, if that was asked.
+    keys: Vec<Option<(Key, Vec3)>>,
     expected: Expected,
     /// The states of a step's first answer, to be remembered; empty if there is none.
     answered: Vec<[Option<RowState>; 2]>,
@@ -123,12 +125,15 @@ impl Workspace {
         self.states.clear();
         self.states.resize(island.rows.len(), [None; 2]);
         let Some(warm) = warm else { return };
-        for span in &island.spans {
-            if let Some((key, point)) = key(island, span)
-                && let Some(states) = warm.find(key, point, &mut self.expected)
+        self.keys.clear();
+        self.keys.extend(island.spans.iter().map(|span| key(island, span)));
+        for (span, key) in island.spans.iter().zip(&self.keys) {
+            if let Some((key, point)) = key
+                && let Some(states) = warm.find(*key, *point, &mut self.expected)
             {
-                for row in span.first..span.first + span.count.rows {
-                    self.states[row] = states[usize::from(island.rows[row].slot) & 7];
+                let range = span.first..span.first + span.count.rows;
+                for (out, row) in self.states[range.clone()].iter_mut().zip(&island.rows[range]) {
+                    *out = states[usize::from(row.slot) & 7];
                 }
             }
         }
@@ -137,13 +142,14 @@ impl Workspace {
     /// Keeps the states of an answer for the next step.
     pub fn remember(&mut self, island: &Island, warm: &mut WarmStart) {
         if self.answered.len() == island.rows.len() {
-            for span in &island.spans {
-                if let Some((key, point)) = key(island, span) {
+            for (span, key) in island.spans.iter().zip(&self.keys) {
+                if let Some((key, point)) = key {
                     let mut states = [[None; 2]; 8];
-                    for row in span.first..span.first + span.count.rows {
-                        states[usize::from(island.rows[row].slot) & 7] = self.answered[row];
+                    let range = span.first..span.first + span.count.rows;
+                    for (state, row) in self.answered[range.clone()].iter().zip(&island.rows[range]) {
+                        states[usize::from(row.slot) & 7] = *state;
                     }
-                    warm.add(key, point, states);
+                    warm.add(*key, *point, states);
                 }
             }
         }
