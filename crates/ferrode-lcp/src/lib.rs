@@ -29,7 +29,10 @@ pub use dantzig::{
     DantzigOptions, DantzigReport, DantzigStatus, DantzigWorkspace, solve_dantzig, solve_dantzig_with,
 };
 pub use error::LcpError;
-pub use pivoting::{PivotingOptions, PivotingReport, PivotingWorkspace, RowState, SparseLcp, solve_pivoting};
+pub use pivoting::{
+    ABREAST, AbreastWorkspace, PivotingOptions, PivotingReport, PivotingWorkspace, RowState, SparseLcp,
+    solve_abreast, solve_pivoting,
+};
 pub use problem::BoxedLcp;
 pub use residual::natural_residual;
 pub use sor::{

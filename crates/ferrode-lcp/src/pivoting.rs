@@ -20,11 +20,14 @@
 //! `r' = r + (S' - S) lambda` from `lambda = 0`, which leave redundant rows at the forces of least norm. (R. T. Rockafellar, "Monotone
 //! operators and the proximal point algorithm", 1976.)
 
+mod abreast;
 mod canonical;
 mod fallback;
 mod interior;
 pub(crate) mod line;
 mod residuals;
+
+pub use abreast::{ABREAST, AbreastWorkspace, solve_abreast};
 
 use crate::error::LcpError;
 use crate::problem::check_row;

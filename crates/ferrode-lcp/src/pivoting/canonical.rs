@@ -6,7 +6,7 @@
 use super::{PivotingWorkspace, RowState, Solve, WRONG};
 
 /// A row counts as degenerate when it is this close to changing its state.
-const DEGENERATE: f64 = 1e-9;
+pub(super) const DEGENERATE: f64 = 1e-9;
 /// So often degenerate rows are looked for.
 const MOST_ROUNDS: u32 = 6;
 

@@ -27,11 +27,11 @@ pub(crate) const LEAST_SIGMA: f64 = 1e-10;
 /// Refinement ends when the error to be expected of the accelerations is below this part of the largest that a force causes: while rows
 /// are still being sorted, and at the end. (Forces are no measure: rounding of the residuals, divided by a small CFM, moves redundant ones
 /// by more than any correction, and to no effect.)
-const ROUGH: f64 = 1e-12;
-const FINE: f64 = 1e-15;
-const MOST_CORRECTIONS: usize = 8;
+pub(crate) const ROUGH: f64 = 1e-12;
+pub(crate) const FINE: f64 = 1e-15;
+pub(crate) const MOST_CORRECTIONS: usize = 8;
 /// A row is firm when its pivot is so many times its CFM: a proximal step then gains as many digits.
-const FIRM: f64 = 1e6;
+pub(crate) const FIRM: f64 = 1e6;
 
 /// Which residuals a correction is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

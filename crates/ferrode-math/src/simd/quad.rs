@@ -3,7 +3,7 @@
 //! Where [`Compute`](super::Compute) leaves it to the compiler which numbers share a register, a [`QuadKernel`] says so. All
 //! operations are those of the lanes one by one, and the order of each sum is written out, so the bits are the same on every machine.
 
-use core::ops::{Add, Mul, Sub};
+use core::ops::{Add, Div, Mul, Sub};
 
 /// A computation that is written once for registers of any width.
 ///
@@ -20,7 +20,9 @@ pub trait QuadKernel {
 ///
 /// The types that implement it can't be named outside: a kernel gets one from [`dispatch_quads`], which knows that the machine has
 /// the instructions.
-pub trait Quad: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+pub trait Quad:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
     /// Two `f64` of the same kind.
     type Pair: Pair;
 
@@ -40,6 +42,15 @@ pub trait Quad: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn join(low: Self::Pair, high: Self::Pair) -> Self;
     /// `(x₀ + x₁) + (x₂ + x₃)` of each of four.
     fn sums(of: [Self; 4]) -> Self;
+    /// The square roots.
+    #[must_use]
+    fn sqrt(self) -> Self;
+    /// `self` where that is larger than `b`, else `b`.
+    #[must_use]
+    fn max(self, b: Self) -> Self;
+    /// `a` where `self` is larger than zero, else `b`.
+    #[must_use]
+    fn where_positive(self, a: Self, b: Self) -> Self;
 }
 
 /// Two `f64`.
@@ -97,6 +108,14 @@ impl<const N: usize> Mul for Array<N> {
     }
 }
 
+impl<const N: usize> Div for Array<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        Self(core::array::from_fn(|l| self.0[l] / b.0[l]))
+    }
+}
+
 impl Quad for Array<4> {
     type Pair = Array<2>;
 
@@ -138,6 +157,21 @@ impl Quad for Array<4> {
     #[inline(always)]
     fn sums(of: [Self; 4]) -> Self {
         Self(of.map(|Self([a, b, c, d])| (a + b) + (c + d)))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn max(self, b: Self) -> Self {
+        Self(core::array::from_fn(|l| if self.0[l] > b.0[l] { self.0[l] } else { b.0[l] }))
+    }
+
+    #[inline(always)]
+    fn where_positive(self, a: Self, b: Self) -> Self {
+        Self(core::array::from_fn(|l| if self.0[l] > 0.0 { a.0[l] } else { b.0[l] }))
     }
 }
 
@@ -192,8 +226,13 @@ mod tests {
             let (mut sums, mut joined) = ([0.0; 4], [0.0; 4]);
             Q::sums([q, q * q, q - Q::splat(0.1), Q::splat(0.3) * q]).store(&mut sums);
             Q::join(Q::Pair::sums([q.high(), q.low()]), p - q.low()).store(&mut joined);
+            let (mut roots, mut larger, mut chosen) = ([0.0; 4], [0.0; 4], [0.0; 4]);
+            ((q * q / Q::splat(0.3)).sqrt()).store(&mut roots);
+            q.max(Q::splat(f64::NAN)).max(Q::splat(1e-3)).store(&mut larger);
+            (q - Q::splat(0.1)).where_positive(q, Q::splat(f64::NAN)).store(&mut chosen);
             let sum = (q.fold() + p).sum();
-            let all = four.iter().chain(&two).chain(&sums).chain(&joined).chain([&sum]);
+            let all = four.iter().chain(&two).chain(&sums).chain(&joined);
+            let all = all.chain(&roots).chain(&larger).chain(&chosen).chain([&sum]);
             all.map(|x| x.to_bits()).collect()
         }
     }

@@ -608,7 +608,7 @@ pub(super) struct F64x4(__m256d);
 pub(super) struct F64x2(__m128d);
 
 macro_rules! f64_operators {
-    ($($type:ident $add:ident $sub:ident $mul:ident;)+) => {$(
+    ($($type:ident $add:ident $sub:ident $mul:ident $div:ident;)+) => {$(
         impl Add for $type {
             type Output = Self;
             #[inline(always)]
@@ -635,12 +635,21 @@ macro_rules! f64_operators {
                 Self(unsafe { $mul(self.0, b.0) })
             }
         }
+
+        impl Div for $type {
+            type Output = Self;
+            #[inline(always)]
+            fn div(self, b: Self) -> Self {
+                // SAFETY: as in `add`.
+                Self(unsafe { $div(self.0, b.0) })
+            }
+        }
     )+};
 }
 
 f64_operators! {
-    F64x4 _mm256_add_pd _mm256_sub_pd _mm256_mul_pd;
-    F64x2 _mm_add_pd _mm_sub_pd _mm_mul_pd;
+    F64x4 _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd;
+    F64x2 _mm_add_pd _mm_sub_pd _mm_mul_pd _mm_div_pd;
 }
 
 // Each function below that takes no value of the type is called by a kernel that `run_quads` runs, and by nobody else: the types are
@@ -699,6 +708,27 @@ impl Quad for F64x4 {
             let (ab, cd) = (_mm256_hadd_pd(a.0, b.0), _mm256_hadd_pd(c.0, d.0));
             let across = _mm256_permute2f128_pd::<0x21>(ab, cd);
             Self(_mm256_add_pd(_mm256_blend_pd::<0b1100>(ab, cd), across))
+        }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: the machine has AVX2.
+        Self(unsafe { _mm256_sqrt_pd(self.0) })
+    }
+
+    #[inline(always)]
+    fn max(self, b: Self) -> Self {
+        // SAFETY: the machine has AVX2. The instruction gives the second one unless the first is larger.
+        Self(unsafe { _mm256_max_pd(self.0, b.0) })
+    }
+
+    #[inline(always)]
+    fn where_positive(self, a: Self, b: Self) -> Self {
+        // SAFETY: the machine has AVX2.
+        unsafe {
+            let positive = _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, _mm256_setzero_pd());
+            Self(_mm256_blendv_pd(b.0, a.0, positive))
         }
     }
 }

@@ -1,0 +1,223 @@
+//! Four problems of the same shape at once, as far as all goes well: see [`crate::sparse::abreast`].
+
+use super::line::state_of;
+use super::{NOISE, canonical::DEGENERATE};
+use super::{
+    PivotingOptions, PivotingReport, PivotingWorkspace, RowState, SparseLcp, WRONG, check, possible,
+};
+use crate::sparse::abreast::{Abreast, Four, Numbers, Task, serves};
+use crate::sparse::symbolic::Symbolic;
+use crate::sparse::system::{FINE, FIRM, MOST_CORRECTIONS, Pass, ROUGH};
+
+/// How many problems are solved at once.
+pub const ABREAST: usize = 4;
+
+/// Memory for [`solve_abreast`].
+#[derive(Clone, Debug, Default)]
+pub struct AbreastWorkspace {
+    numbers: Abreast,
+    /// The state of each row.
+    state: Vec<[RowState; ABREAST]>,
+    /// The rows that have a bound in one of the problems.
+    bounded: Vec<u32>,
+}
+
+/// Solves up to four problems whose rows act on the same bodies in the same order, where that takes no pivoting: where each row's state is as
+/// guessed, and nothing else is amiss. Each answer is, to the bit, that of [`solve_pivoting`](super::solve_pivoting), which is to be asked
+/// where there is none. The shape is kept in `first`, the first problem's workspace.
+pub fn solve_abreast(
+    problems: &mut [SparseLcp<'_>],
+    options: &PivotingOptions,
+    first: &mut PivotingWorkspace,
+    workspace: &mut AbreastWorkspace,
+) -> [Option<PivotingReport>; ABREAST] {
+    let none = [None; ABREAST];
+    let Some((p, others)) = problems.split_first() else { return none };
+    let m = p.jacobian.len();
+    let alike = |other: &SparseLcp<'_>| {
+        other.bodies == p.bodies && other.jacobian.len() == m && other.blocks == p.blocks
+    };
+    if others.is_empty() || others.len() >= ABREAST || !others.iter().all(alike) {
+        return none;
+    }
+    let sound = |p: &SparseLcp<'_>| check(p).is_ok() && p.findex[..m].iter().all(|f| *f < 0);
+    if !problems.iter().all(sound) {
+        return none;
+    }
+    let p = &problems[0];
+    let shape = first.shapes.get(options.topology, p.bodies, p.blocks, p.lo, p.hi);
+    let fits = |p: &SparseLcp<'_>| shape.fits(p.bodies, p.blocks, p.lo, p.hi);
+    if !serves(shape) || !problems.iter().all(fits) {
+        return none;
+    }
+    Together { problems, shape, work: workspace }.run()
+}
+
+fn numbers<'a>(p: &SparseLcp<'a>) -> Numbers<'a> {
+    Numbers::of(p.jacobian, [p.sigma, p.rhs, p.lo, p.hi])
+}
+
+struct Together<'a, 'b> {
+    problems: &'a mut [SparseLcp<'b>],
+    shape: &'a Symbolic,
+    work: &'a mut AbreastWorkspace,
+}
+
+/// How far the refinement of one solution has come, as in [`crate::sparse::system::System`].
+#[derive(Clone, Copy, Debug, Default)]
+struct Refinement {
+    change: f64,
+    rate: f64,
+    scale: f64,
+}
+
+impl Together<'_, '_> {
+    fn run(mut self) -> [Option<PivotingReport>; ABREAST] {
+        self.load();
+        self.do_all(Task::Prepare);
+        if !self.work.numbers.used_sigma.as_flattened().iter().all(|sigma| *sigma > 0.0) {
+            // Some row is empty.
+            return [None; ABREAST];
+        }
+        self.guess();
+        self.do_all(Task::Factorise);
+        let (largest, mut refinements) = self.solve();
+        self.refine(&mut refinements, ROUGH);
+        self.do_all(Task::Product);
+        let right = [0, 1, 2, 3].map(|l| largest[l].is_finite() && self.states_are_right(l, largest[l]));
+        if right == [false; ABREAST] {
+            return [None; ABREAST];
+        }
+        let firm = self.work.numbers.hold_firmly(self.problems[0].blocks, self.shape, FIRM);
+        for (refinement, firm) in refinements.iter_mut().zip(firm) {
+            if !firm {
+                // How fast proximal steps converge, the first one does not tell.
+                refinement.rate = 1.0;
+            }
+        }
+        self.refine(&mut refinements, FINE);
+        let [residual, largest] = self.do_all(Task::Measure);
+        let mut reports = [None; ABREAST];
+        for (l, problem) in self.problems.iter_mut().enumerate() {
+            let report = PivotingReport {
+                factorisations: 1,
+                residual: residual[l],
+                largest: largest[l],
+                factor_blocks: self.shape.blocks(),
+                ..PivotingReport::default()
+            };
+            if !right[l] || !report.certified() {
+                continue;
+            }
+            reports[l] = Some(report);
+            let answers = self.work.numbers.lambda.iter().zip(&self.work.state);
+            for ((x, states), (lambda, state)) in problem.x.iter_mut().zip(&mut *problem.states).zip(answers)
+            {
+                *x = lambda[l];
+                *states = [Some(state[l]); 2];
+            }
+        }
+        reports
+    }
+
+    fn do_all(&mut self, task: Task) -> [Four; 2] {
+        self.work.numbers.work(self.problems[0].blocks, self.shape, task)
+    }
+
+    fn load(&mut self) {
+        let p = &self.problems[0];
+        let m = p.jacobian.len();
+        let mut islands = [numbers(p); ABREAST];
+        for (island, p) in islands.iter_mut().zip(self.problems.iter()) {
+            *island = numbers(p);
+        }
+        let AbreastWorkspace { numbers, bounded, .. } = &mut *self.work;
+        numbers.load(&islands, self.shape);
+        bounded.clear();
+        let unbounded = [[f64::NEG_INFINITY; ABREAST], [f64::INFINITY; ABREAST]];
+        bounded.extend((0..m as u32).filter(|row| numbers.bounds[*row as usize] != unbounded));
+    }
+
+    /// Takes the rows' states as guessed, and the forces of those that are not free.
+    fn guess(&mut self) {
+        let AbreastWorkspace { numbers, state, bounded } = &mut *self.work;
+        state.clear();
+        state.resize(numbers.rhs.len(), [RowState::Free; ABREAST]);
+        numbers.lambda.fill([0.0; ABREAST]);
+        for row in bounded.iter().map(|row| *row as usize) {
+            let [lo, hi] = numbers.bounds[row];
+            for l in 0..ABREAST {
+                if lo[l] == f64::NEG_INFINITY && hi[l] == f64::INFINITY {
+                    continue;
+                }
+                let p = self.problems.get(l).unwrap_or(&self.problems[0]);
+                let guess = p.states[row][1].unwrap_or_else(|| {
+                    let alone = numbers.rhs[row][l] / numbers.diagonal[row][l];
+                    if alone == 0.0 { RowState::Free } else { state_of(alone, lo[l], hi[l]) }
+                });
+                state[row][l] = possible(guess, lo[l], hi[l]);
+                numbers.lambda[row][l] = match state[row][l] {
+                    RowState::Free => 0.0,
+                    RowState::Lower => lo[l],
+                    RowState::Upper => hi[l],
+                };
+            }
+        }
+        let free = state.iter().map(|state| state.map(|state| state == RowState::Free));
+        numbers.set_free(free, self.problems[0].blocks);
+    }
+
+    /// The first solution, and the largest forces.
+    fn solve(&mut self) -> (Four, [Refinement; ABREAST]) {
+        let [change, _] = self.do_all(Task::Correct(Pass::First));
+        self.do_all(Task::Apply([true; ABREAST]));
+        let [largest, strongest] = self.do_all(Task::Strengths);
+        let of = |l: usize| Refinement { change: change[l], rate: 1.0, scale: strongest[l].sqrt() };
+        (largest, [of(0), of(1), of(2), of(3)])
+    }
+
+    /// Corrects until the error to be expected is below that part of the scale, or rounding stops it: each problem as if alone.
+    fn refine(&mut self, refinements: &mut [Refinement; ABREAST], part: f64) {
+        let mut going = [true; ABREAST];
+        for _ in 0..MOST_CORRECTIONS {
+            for (going, r) in going.iter_mut().zip(refinements.iter()) {
+                let reached = r.change * r.rate <= part * r.scale;
+                *going = *going && !reached;
+            }
+            if going == [false; ABREAST] {
+                break;
+            }
+            let [change, _] = self.do_all(Task::Correct(Pass::Own));
+            for ((going, r), change) in going.iter_mut().zip(refinements.iter_mut()).zip(change) {
+                if *going {
+                    (r.rate, r.change) = (change / r.change, change);
+                    let falls = r.rate < 0.5;
+                    if !falls {
+                        // Rounding is all that is left of it.
+                        (r.rate, *going) = (0.0, false);
+                    }
+                }
+            }
+            self.do_all(Task::Apply(going));
+        }
+    }
+
+    /// Whether the states of a problem's rows are right, and none is degenerate.
+    fn states_are_right(&self, l: usize, largest: f64) -> bool {
+        let AbreastWorkspace { numbers: s, state, bounded } = &*self.work;
+        let (tolerance, close) = (WRONG * (1.0 + largest), DEGENERATE * (1.0 + largest));
+        bounded.iter().map(|row| *row as usize).all(|row| {
+            let [lo, hi] = s.bounds[row].map(|bound| bound[l]);
+            let (lambda, rhs) = (s.lambda[row][l], s.rhs[row][l]);
+            let slack = s.jy[row][l] + s.sigma[row][l] * lambda - rhs;
+            let least = tolerance * s.diagonal[row][l] + NOISE * rhs.abs();
+            match state[row][l] {
+                // Within its bounds, and not at them.
+                RowState::Free => lambda - lo >= close && hi - lambda >= close,
+                _ if lo == hi => true,
+                RowState::Lower => slack >= -least,
+                RowState::Upper => slack <= least,
+            }
+        })
+    }
+}

@@ -1,0 +1,329 @@
+//! Small dense blocks of four islands, a quad for each number: the kernels of [`super::super::kernels`] and [`super::super::rows`] once more,
+//! with the sums in the same order.
+
+use super::super::kernels::stride;
+use super::Four;
+use ferrode_math::simd::Quad;
+
+/// The twelve numbers of a row, six for each of its bodies.
+pub(super) type Row = [Four; 12];
+
+/// `R` numbers of a vector.
+#[inline(always)]
+pub(super) fn load<Q: Quad, const R: usize>(from: &[Four]) -> [Q; R] {
+    let from = &from[..R];
+    let mut out = [Q::splat(0.0); R];
+    for r in 0..R {
+        out[r] = Q::load(&from[r]);
+    }
+    out
+}
+
+#[inline(always)]
+pub(super) fn store<Q: Quad, const R: usize>(x: [Q; R], to: &mut [Four]) {
+    let to = &mut to[..R];
+    for r in 0..R {
+        x[r].store(&mut to[r]);
+    }
+}
+
+/// `to += x`.
+#[inline(always)]
+pub(super) fn add<Q: Quad, const R: usize>(x: [Q; R], to: &mut [Four]) {
+    let to = &mut to[..R];
+    for r in 0..R {
+        (Q::load(&to[r]) + x[r]).store(&mut to[r]);
+    }
+}
+
+/// Even and odd ones apart.
+#[inline(always)]
+fn sum_of_six<Q: Quad>(p: [Q; 6]) -> Q {
+    ((p[0] + p[2]) + p[4]) + ((p[1] + p[3]) + p[5])
+}
+
+/// The product of the numbers with that place of a row and of what is there for two bodies.
+#[inline(always)]
+fn term<Q: Quad>(row: &Row, y: &[Q; 12], i: usize) -> Q {
+    Q::load(&row[i]) * y[i]
+}
+
+/// The terms of the product of two rows, or of what is there for two bodies and a row, that are summed at last.
+#[inline(always)]
+pub(super) fn terms<Q: Quad>(row: &Row, y: &[Q; 12], sides: [bool; 2]) -> [Q; 4] {
+    let mut terms = [Q::splat(0.0); 4];
+    match sides {
+        [true, true] => {
+            for (l, out) in terms.iter_mut().enumerate() {
+                *out = (term(row, y, l) + term(row, y, 4 + l)) + term(row, y, 8 + l);
+            }
+        }
+        [true, false] => {
+            for l in 0..2 {
+                terms[l] = term(row, y, l) + term(row, y, 4 + l);
+                terms[2 + l] = term(row, y, 2 + l);
+            }
+        }
+        [false, true] => {
+            for l in 0..2 {
+                terms[l] = term(row, y, 8 + l);
+                terms[2 + l] = term(row, y, 6 + l) + term(row, y, 10 + l);
+            }
+        }
+        [false, false] => {}
+    }
+    terms
+}
+
+/// Their sum, in the order of `Quad::sums`.
+#[inline(always)]
+pub(super) fn sum<Q: Quad>(t: [Q; 4]) -> Q {
+    (t[0] + t[1]) + (t[2] + t[3])
+}
+
+/// Their sum, in the order of `Quad::fold` and `Pair::sum`.
+#[inline(always)]
+pub(super) fn folded_sum<Q: Quad>(t: [Q; 4]) -> Q {
+    (t[0] + t[2]) + (t[1] + t[3])
+}
+
+/// `sum += s row`.
+#[inline(always)]
+pub(super) fn plus_row<Q: Quad>(sum: &mut [Q; 12], s: Q, row: &Row) {
+    for i in 0..12 {
+        sum[i] = sum[i] + Q::load(&row[i]) * s;
+    }
+}
+
+/// `out -= A A^T` for the parts of rows `A` that act on the bodies told by `sides`: the lower triangle; `out` has `H` rows.
+#[inline(always)]
+pub(super) fn sub_square<Q: Quad, const H: usize>(out: &mut [Four], rows: &[Row], sides: [bool; 2]) {
+    let out = &mut out[..stride(H) * H];
+    for (c, with) in rows.iter().take(H).enumerate() {
+        let with = load::<Q, 12>(with);
+        for (r, row) in rows.iter().take(H).enumerate().skip(c) {
+            let terms = terms(row, &with, sides);
+            let product = if r < 4 { sum(terms) } else { folded_sum(terms) };
+            let out = &mut out[stride(H) * c + r];
+            (Q::load(out) - product).store(out);
+        }
+    }
+}
+
+/// `out -= A B^T` for the parts of rows `A` and `B` that act on one body; `out` has `H` rows.
+#[inline(always)]
+pub(super) fn sub_product<Q: Quad, const H: usize>(
+    out: &mut [Four],
+    (a, s): (&[Row], usize),
+    (b, t): (&[Row], usize),
+) {
+    for (out, with) in out.chunks_exact_mut(stride(H)).zip(b) {
+        let with = load::<Q, 6>(&with[6 * t..]);
+        for (r, row) in a.iter().take(H).enumerate() {
+            let mut p = load::<Q, 6>(&row[6 * s..]);
+            for i in 0..6 {
+                p[i] = p[i] * with[i];
+            }
+            let product = if r < 4 { ((p[0] + p[1]) + (p[2] + p[3])) + (p[4] + p[5]) } else { sum_of_six(p) };
+            (Q::load(&out[r]) - product).store(&mut out[r]);
+        }
+    }
+}
+
+/// `t -= sign a a^T`, the lower triangle; `t` is R x R, `a` R x D.
+#[inline(always)]
+pub(super) fn sub_aat<Q: Quad, const R: usize, const D: usize>(t: &mut [Four], a: &[Four], sign: f64) {
+    let (t, a) = (&mut t[..stride(R) * R], &a[..stride(R) * D]);
+    let sign = Q::splat(sign);
+    for c in 0..R {
+        let with = Q::load(&a[c]);
+        let mut sum = [Q::splat(0.0); R];
+        for r in c..R {
+            sum[r] = Q::load(&a[r]) * with;
+        }
+        for d in 1..D {
+            let a = &a[stride(R) * d..][..R];
+            let with = Q::load(&a[c]);
+            for r in c..R {
+                sum[r] = sum[r] + Q::load(&a[r]) * with;
+            }
+        }
+        for r in c..R {
+            let t = &mut t[stride(R) * c + r];
+            (Q::load(t) - sum[r] * sign).store(t);
+        }
+    }
+}
+
+/// `t -= sign a b^T`; `t` is R x C, `a` R x D, `b` C x D.
+#[inline(always)]
+pub(super) fn sub_abt<Q: Quad, const R: usize, const C: usize, const D: usize>(
+    t: &mut [Four],
+    a: &[Four],
+    b: &[Four],
+    sign: f64,
+) {
+    let (t, a, b) = (&mut t[..stride(R) * C], &a[..stride(R) * D], &b[..stride(C) * D]);
+    let sign = Q::splat(sign);
+    for c in 0..C {
+        let with = Q::load(&b[c]);
+        let mut sum = load::<Q, R>(a);
+        for sum in &mut sum {
+            *sum = *sum * with;
+        }
+        for d in 1..D {
+            let with = Q::load(&b[stride(C) * d + c]);
+            let a = &a[stride(R) * d..][..R];
+            for r in 0..R {
+                sum[r] = sum[r] + Q::load(&a[r]) * with;
+            }
+        }
+        let t = &mut t[stride(R) * c..][..R];
+        for r in 0..R {
+            (Q::load(&t[r]) - sum[r] * sign).store(&mut t[r]);
+        }
+    }
+}
+
+/// `sign h = L L^T` in place, lower triangle; writes the rows of `L^-1`, without the zeros. A pivot that is not positive is replaced by 1.
+#[inline(always)]
+pub(super) fn cholesky<Q: Quad, const N: usize>(h: &mut [Four], inverse: &mut [Four], sign: f64) {
+    let s = stride(N);
+    let (h, inverse) = (&mut h[..s * N], &mut inverse[..s * N]);
+    let (sign, one) = (Q::splat(sign), Q::splat(1.0));
+    let (mut pivots, mut over) = ([one; N], [one; N]);
+    for c in 0..N {
+        let mut column = load::<Q, N>(&h[s * c..]);
+        for x in &mut column[c..] {
+            *x = *x * sign;
+        }
+        for q in 0..c {
+            let factor = Q::load(&h[s * q + c]) * over[q];
+            for r in c..N {
+                column[r] = column[r] - Q::load(&h[s * q + r]) * factor;
+            }
+        }
+        for r in c..N {
+            column[r].store(&mut h[s * c + r]);
+        }
+        pivots[c] = column[c].where_positive(column[c], one);
+        over[c] = one / pivots[c];
+    }
+    for c in 0..N {
+        let root = pivots[c].sqrt();
+        let inv = root * over[c];
+        root.store(&mut h[s * c + c]);
+        for r in c + 1..N {
+            let h = &mut h[s * c + r];
+            (Q::load(h) * inv).store(h);
+        }
+        let mut row = [Q::splat(0.0); N];
+        for q in 0..c {
+            let factor = Q::load(&h[s * q + c]);
+            for k in 0..=q {
+                row[k] = row[k] - Q::load(&inverse[s * q + k]) * factor;
+            }
+        }
+        for k in 0..c {
+            (row[k] * inv).store(&mut inverse[s * c + k]);
+        }
+        inv.store(&mut inverse[s * c + c]);
+    }
+}
+
+/// `x = x L^-T` for a lower triangle and the rows of its inverse, of which the diagonal is read; `x` is R x C.
+#[inline(always)]
+pub(super) fn solve_right<Q: Quad, const R: usize, const C: usize>(
+    x: &mut [Four],
+    l: &[Four],
+    inverse: &[Four],
+) {
+    let (x, l, inverse) = (&mut x[..stride(R) * C], &l[..stride(C) * C], &inverse[..stride(C) * C]);
+    for c in 0..C {
+        let mut column = load::<Q, R>(&x[stride(R) * c..]);
+        for q in 0..c {
+            let factor = Q::load(&l[stride(C) * q + c]);
+            let before = &x[stride(R) * q..][..R];
+            for r in 0..R {
+                column[r] = column[r] - Q::load(&before[r]) * factor;
+            }
+        }
+        let inv = Q::load(&inverse[stride(C) * c + c]);
+        for x in &mut column {
+            *x = *x * inv;
+        }
+        store(column, &mut x[stride(R) * c..]);
+    }
+}
+
+/// `y -= sign b x`; `b` is R x C.
+#[inline(always)]
+pub(super) fn sub_mul<Q: Quad, const R: usize, const C: usize>(
+    y: &mut [Four],
+    b: &[Four],
+    x: &[Q; C],
+    sign: f64,
+) {
+    let b = &b[..stride(R) * C];
+    let mut sums = [[Q::splat(0.0); R]; 2];
+    for c in 0..C {
+        let b = &b[stride(R) * c..][..R];
+        for r in 0..R {
+            let product = Q::load(&b[r]) * x[c];
+            sums[c % 2][r] = if c < 2 { product } else { sums[c % 2][r] + product };
+        }
+    }
+    let (y, sign) = (&mut y[..R], Q::splat(sign));
+    for r in 0..R {
+        (Q::load(&y[r]) - (sums[0][r] + sums[1][r]) * sign).store(&mut y[r]);
+    }
+}
+
+/// `y -= b^T x`; `b` is C x R.
+#[inline(always)]
+pub(super) fn sub_transposed<Q: Quad, const R: usize, const C: usize>(
+    y: &mut [Q; R],
+    b: &[Four],
+    x: &[Four],
+) {
+    let (b, x) = (&b[..stride(C) * R], load::<Q, C>(x));
+    for r in 0..R {
+        let mut p = [Q::splat(0.0); 6];
+        for c in 0..C {
+            p[c] = Q::load(&b[stride(C) * r + c]) * x[c];
+        }
+        let product = if C == 3 && r < 4 { (p[0] + p[1]) + p[2] } else { sum_of_six(p) };
+        y[r] = y[r] - product;
+    }
+}
+
+/// `x = L^-1 x`, given the rows of the inverse.
+#[inline(always)]
+pub(super) fn forward<Q: Quad, const N: usize>(inverse: &[Four], x: [Q; N]) -> [Q; N] {
+    let inverse = &inverse[..stride(N) * N];
+    let mut out = x;
+    for r in 0..N {
+        let mut p = [Q::splat(0.0); 6];
+        for c in 0..=r {
+            p[c] = Q::load(&inverse[stride(N) * r + c]) * x[c];
+        }
+        out[r] = if N == 3 { (p[0] + p[1]) + p[2] } else { sum_of_six(p) };
+    }
+    out
+}
+
+/// `x = L^-T x`, given the rows of the inverse.
+#[inline(always)]
+pub(super) fn back<Q: Quad, const N: usize>(inverse: &[Four], x: [Q; N]) -> [Q; N] {
+    let inverse = &inverse[..stride(N) * N];
+    let mut out = x;
+    for r in 0..N {
+        let mut sums = [Q::splat(0.0); 2];
+        for c in r..N {
+            let product = Q::load(&inverse[stride(N) * c + r]) * x[c];
+            sums[c % 2] = sums[c % 2] + product;
+        }
+        out[r] = sums[0] + sums[1];
+    }
+    out
+}

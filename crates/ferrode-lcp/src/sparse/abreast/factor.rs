@@ -1,0 +1,216 @@
+//! The factor of four islands: [`super::super::factor`] and [`super::super::matrix`] with a quad for each number.
+
+use super::super::kernels::{by_sizes, stride};
+use super::super::symbolic::{Head, NONE, Place, Symbolic};
+use super::super::{NO_SPARSE_BODY, RowBlock};
+use super::blocks::{
+    Row, back, cholesky, forward, load, solve_right, store, sub_aat, sub_abt, sub_mul, sub_product,
+    sub_square, sub_transposed,
+};
+use super::{Abreast, Four};
+use ferrode_math::simd::Quad;
+
+/// Numbers laid out as the shape says.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Factor {
+    pub values: Vec<Four>,
+    /// For each row where the block of the present column is, counted from the column's start.
+    position: Vec<u32>,
+}
+
+/// The rows of a block without those that have no weight in an island.
+struct Masked([Row; 6]);
+
+impl Masked {
+    const fn new() -> Self {
+        Self([[[0.0; 4]; 12]; 6])
+    }
+
+    #[inline(always)]
+    fn of<'a, Q: Quad>(&'a mut self, all: &'a Abreast, block: &RowBlock, whole: bool) -> &'a [Row] {
+        let range = block.range();
+        let rows = &all.jacobian[range.clone()];
+        if whole {
+            return rows;
+        }
+        for ((out, row), weight) in self.0.iter_mut().zip(rows).zip(&all.weight[range]) {
+            let weight = Q::load(weight);
+            for i in 0..12 {
+                weight.where_positive(Q::load(&row[i]), Q::splat(0.0)).store(&mut out[i]);
+            }
+        }
+        let count = rows.len().min(6);
+        &self.0[..count]
+    }
+}
+
+/// Puts the rows into the matrix.
+#[inline(always)]
+pub(super) fn assemble<Q: Quad>(all: &mut Abreast, blocks: &[RowBlock], shape: &Symbolic) {
+    let mut values = core::mem::take(&mut all.factor.values);
+    values.clear();
+    values.resize(shape.numbers(), [0.0; 4]);
+    for c in 0..shape.columns() {
+        let (own, width) = (shape.start[c] as usize, usize::from(shape.size[c]));
+        for i in 0..width {
+            values[own + (stride(width) + 1) * i] = [shape.sign[c]; 4];
+        }
+    }
+    let (mut masked, mut other) = (Masked::new(), Masked::new());
+    for ((block, place), whole) in blocks.iter().zip(&shape.places).zip(&all.whole) {
+        let rows = masked.of::<Q>(all, block, *whole);
+        add_joint::<Q>(&mut values, (rows, &all.weight[block.range()]), block, place, shape);
+    }
+    for coupling in &shape.couplings {
+        let [later, earlier] = coupling.blocks.map(|i| i as usize);
+        let height = shape.size[shape.places[later].own as usize];
+        let out = &mut values[shape.at[coupling.at as usize] as usize..];
+        let rows = masked.of::<Q>(all, &blocks[later], all.whole[later]);
+        let cols = other.of::<Q>(all, &blocks[earlier], all.whole[earlier]);
+        let [s, t] = coupling.sides.map(usize::from);
+        by_sizes!(sub_product, Q, [height], (out, (rows, s), (cols, t)));
+    }
+    all.factor.values = values;
+}
+
+/// `-S` of a joint, `J` between it and its bodies; of light bodies, which are eliminated already, `-J J^T`.
+#[inline(always)]
+fn add_joint<Q: Quad>(
+    values: &mut [Four],
+    (rows, weight): (&[Row], &[Four]),
+    block: &RowBlock,
+    place: &Place,
+    shape: &Symbolic,
+) {
+    let own = place.own as usize;
+    let width = usize::from(shape.size[own]);
+    let diagonal = &mut values[shape.start[own] as usize..];
+    for (c, weight) in weight.iter().enumerate() {
+        let (weight, least) = (Q::load(weight), Q::splat(-1.0));
+        // A row without a weight keeps the -1 that stands there.
+        weight.where_positive(least / weight, least).store(&mut diagonal[(stride(width) + 1) * c]);
+    }
+    let light = light_sides(block, place);
+    if light != [false; 2] {
+        by_sizes!(sub_square, Q, [width], (diagonal, rows, light));
+    }
+    for (s, column) in place.columns.into_iter().enumerate() {
+        if column == NONE {
+            continue;
+        }
+        let values = &mut values[shape.at[place.at[s] as usize] as usize..];
+        for (r, row) in rows.iter().enumerate() {
+            for c in 0..6 {
+                // By columns: the one eliminated first.
+                let at = if column < place.own { stride(width) * c + r } else { 6 * r + c };
+                (Q::load(&values[at]) + Q::load(&row[6 * s + c])).store(&mut values[at]);
+            }
+        }
+    }
+}
+
+/// Which of a joint's bodies have no column.
+#[inline(always)]
+pub(super) fn light_sides(block: &RowBlock, place: &Place) -> [bool; 2] {
+    [
+        place.columns[0] == NONE && block.bodies[0] != NO_SPARSE_BODY,
+        place.columns[1] == NONE && block.bodies[1] != NO_SPARSE_BODY,
+    ]
+}
+
+impl Factor {
+    /// Factors what was assembled.
+    #[inline(always)]
+    pub fn factorise<Q: Quad>(&mut self, shape: &Symbolic) {
+        self.position.resize(shape.columns(), NONE);
+        for c in 0..shape.columns() {
+            let range = shape.column_start[c] as usize..shape.column_start[c + 1] as usize;
+            let start = shape.start[c];
+            let (earlier, own) = self.values.split_at_mut(start as usize);
+            let width = shape.size[c];
+            let sources = shape.row_start[c] as usize..shape.row_start[c + 1] as usize;
+            if !sources.is_empty() {
+                for block in range.clone() {
+                    self.position[shape.row[block] as usize] = shape.at[block] - start;
+                }
+            }
+            for source in sources {
+                let first = shape.row_block[source] as usize;
+                let k = shape.row_column[source] as usize;
+                let (depth, sign) = (shape.size[k], shape.sign[k]);
+                let factor = &earlier[shape.at[first] as usize..];
+                by_sizes!(sub_aat, Q, [width, depth], (own, factor, sign));
+                for block in first + 1..shape.column_start[k + 1] as usize {
+                    let row = shape.row[block] as usize;
+                    let target = &mut own[self.position[row] as usize..];
+                    let other = &earlier[shape.at[block] as usize..];
+                    by_sizes!(sub_abt, Q, [shape.size[row], width, depth], (target, other, factor, sign));
+                }
+            }
+            let square = usize::from(width) * stride(usize::from(width));
+            let (diagonal, rest) = own.split_at_mut(square);
+            by_sizes!(cholesky, Q, [width], (diagonal, rest, shape.sign[c]));
+            let (inverse, mut rest) = rest.split_at_mut(square);
+            for row in &shape.row[range] {
+                let height = shape.size[*row as usize];
+                by_sizes!(solve_right, Q, [height, width], (rest, diagonal, inverse));
+                rest = &mut rest[stride(usize::from(height)) * usize::from(width)..];
+            }
+        }
+    }
+
+    /// `x = K^-1 x`, `x` by columns.
+    #[inline(always)]
+    pub fn solve<Q: Quad>(&self, shape: &Symbolic, x: &mut [Four]) {
+        for head in &shape.heads {
+            let values = &self.values[head.start as usize..];
+            by_sizes!(go_forward, Q, [head.width], (head, shape, values, x));
+        }
+        for head in shape.heads.iter().rev() {
+            let values = &self.values[head.start as usize..];
+            by_sizes!(go_back, Q, [head.width], (head, shape, values, x));
+        }
+    }
+}
+
+/// `x_c = L_cc^-1 x_c`, and takes it off the unknowns below.
+#[inline(always)]
+fn go_forward<Q: Quad, const N: usize>(head: &Head, shape: &Symbolic, values: &[Four], x: &mut [Four]) {
+    let square = N * stride(N);
+    let (inverse, mut rest) = values[square..].split_at(square);
+    let own = &mut x[head.offset as usize..];
+    let solved = forward::<Q, N>(inverse, load(own));
+    store(solved, own);
+    for below in &shape.below[head.below()] {
+        let target = &mut x[below.offset as usize..];
+        if below.height == 3 {
+            sub_mul::<Q, 3, N>(target, rest, &solved, head.sign);
+        } else {
+            sub_mul::<Q, 6, N>(target, rest, &solved, head.sign);
+        }
+        rest = &rest[stride(usize::from(below.height)) * N..];
+    }
+}
+
+/// Takes the unknowns below off `x_c`, and `x_c = d_c L_cc^-T x_c`.
+#[inline(always)]
+fn go_back<Q: Quad, const N: usize>(head: &Head, shape: &Symbolic, values: &[Four], x: &mut [Four]) {
+    let square = N * stride(N);
+    let (inverse, mut rest) = values[square..].split_at(square);
+    let mut sum = load::<Q, N>(&x[head.offset as usize..]);
+    for below in &shape.below[head.below()] {
+        let source = &x[below.offset as usize..];
+        if below.height == 3 {
+            sub_transposed::<Q, N, 3>(&mut sum, rest, source);
+        } else {
+            sub_transposed::<Q, N, 6>(&mut sum, rest, source);
+        }
+        rest = &rest[stride(usize::from(below.height)) * N..];
+    }
+    let mut solved = back::<Q, N>(inverse, sum);
+    let sign = Q::splat(head.sign);
+    for x in &mut solved {
+        *x = *x * sign;
+    }
+    store(solved, &mut x[head.offset as usize..]);
+}

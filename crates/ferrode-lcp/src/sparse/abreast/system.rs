@@ -1,0 +1,327 @@
+//! Solves of four islands with the rows of given sets held exactly: [`super::super::system`] with a quad for each number.
+
+use super::super::RowBlock;
+use super::super::symbolic::{NONE, Symbolic};
+use super::super::system::{LEAST_SIGMA, Pass};
+use super::blocks::{add, folded_sum, load, plus_row, store, sum, terms};
+use super::factor::{assemble, light_sides};
+use super::{Abreast, Four};
+use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
+
+/// What is to be done, with the machine's instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Task {
+    /// Computes what the rows alone decide: diagonals, CFM as used.
+    Prepare,
+    /// Assembles and factors.
+    Factorise,
+    /// Finds a correction; the answer is the largest change of an acceleration.
+    Correct(Pass),
+    /// Makes the correction that was found last, where `true`.
+    Apply([bool; 4]),
+    /// Nothing is changed; the answer is the largest force, and the square of what the force that does most does to its row.
+    Strengths,
+    /// Sets `jy` to `J y`.
+    Product,
+    /// Brings forces inside their bounds, and sets `y` to `J^T lambda` and `jy` to `J y`, from these alone. The answer is the natural residual and
+    /// the largest force.
+    Measure,
+}
+
+struct Work<'a> {
+    all: &'a mut Abreast,
+    blocks: &'a [RowBlock],
+    shape: &'a Symbolic,
+    task: Task,
+}
+
+impl QuadKernel for Work<'_> {
+    type Out = [Four; 2];
+
+    #[inline(always)]
+    fn run<Q: Quad>(self) -> [Four; 2] {
+        let Self { all, blocks, shape, task } = self;
+        match task {
+            Task::Prepare => all.prepare::<Q>(),
+            Task::Factorise => {
+                assemble::<Q>(all, blocks, shape);
+                all.factor.factorise::<Q>(shape);
+            }
+            Task::Correct(pass) => return [all.correct::<Q>(blocks, shape, pass), [0.0; 4]],
+            Task::Apply(to) => all.apply::<Q>(to),
+            Task::Strengths => return all.strengths::<Q>(),
+            Task::Product => all.product::<Q>(blocks),
+            Task::Measure => return all.measure::<Q>(blocks),
+        }
+        [[0.0; 4]; 2]
+    }
+}
+
+/// What `y` holds for two bodies; zero where there is none.
+#[inline(always)]
+fn of_bodies<Q: Quad>(y: &[[Four; 6]], bodies: [u32; 2]) -> [Q; 12] {
+    let mut out = [Q::splat(0.0); 12];
+    for s in 0..2 {
+        if let Some(y) = y.get(bodies[s] as usize) {
+            for i in 0..6 {
+                out[6 * s + i] = Q::load(&y[i]);
+            }
+        }
+    }
+    out
+}
+
+/// Adds to what `y` holds for two bodies, where they are.
+#[inline(always)]
+fn add_to_bodies<Q: Quad>(x: [Q; 12], y: &mut [[Four; 6]], bodies: [u32; 2]) {
+    let [a, b, c, d, e, f, g, h, i, j, k, l] = x;
+    if let Some(y) = y.get_mut(bodies[0] as usize) {
+        add([a, b, c, d, e, f], y);
+    }
+    if let Some(y) = y.get_mut(bodies[1] as usize) {
+        add([g, h, i, j, k, l], y);
+    }
+}
+
+/// The largest of some numbers, by size; not a number if one is not.
+#[derive(Clone, Copy)]
+struct Largest<Q> {
+    most: Q,
+    total: Q,
+}
+
+impl<Q: Quad> Largest<Q> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { most: Q::splat(0.0), total: Q::splat(0.0) }
+    }
+
+    #[inline(always)]
+    fn take(&mut self, x: Q) {
+        let size = x.max(Q::splat(0.0) - x);
+        self.most = size.max(self.most);
+        self.total = self.total + size;
+    }
+
+    #[inline(always)]
+    fn with(self, b: Self) -> Self {
+        Self { most: self.most.max(b.most), total: self.total + b.total }
+    }
+
+    #[inline(always)]
+    fn get(self) -> Four {
+        let (mut most, mut total) = ([0.0; 4], [0.0; 4]);
+        self.most.store(&mut most);
+        self.total.store(&mut total);
+        for l in 0..4 {
+            if total[l].is_nan() {
+                most[l] = total[l];
+            }
+        }
+        most
+    }
+}
+
+/// The nearest number within bounds.
+#[inline(always)]
+fn within<Q: Quad>(x: Q, [lo, hi]: &[Four; 2]) -> Q {
+    let (x, hi) = (x.max(Q::load(lo)), Q::load(hi));
+    (x - hi).where_positive(hi, x)
+}
+
+impl Abreast {
+    pub fn work(&mut self, blocks: &[RowBlock], shape: &Symbolic, task: Task) -> [Four; 2] {
+        dispatch_quads(Work { all: self, blocks, shape, task })
+    }
+
+    #[inline(always)]
+    fn prepare<Q: Quad>(&mut self) {
+        let (zero, one, least) = (Q::splat(0.0), Q::splat(1.0), Q::splat(LEAST_SIGMA));
+        for (row, jacobian) in self.jacobian.iter().enumerate() {
+            let sigma = Q::load(&self.sigma[row]);
+            let square = folded_sum(terms(jacobian, &load::<Q, 12>(jacobian), [true; 2]));
+            let diagonal = square + sigma;
+            let used = sigma.max(least * diagonal);
+            diagonal.store(&mut self.diagonal[row]);
+            used.store(&mut self.used_sigma[row]);
+            used.where_positive(one / used, zero).store(&mut self.inverse_sigma[row]);
+        }
+    }
+
+    #[inline(always)]
+    fn product<Q: Quad>(&mut self, blocks: &[RowBlock]) {
+        for block in blocks {
+            let y = of_bodies::<Q>(&self.y, block.bodies);
+            for row in block.range() {
+                sum(terms(&self.jacobian[row], &y, [true; 2])).store(&mut self.jy[row]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn strengths<Q: Quad>(&self) -> [Four; 2] {
+        let (mut largest, mut strongest) = (Largest::<Q>::new(), Largest::<Q>::new());
+        for (lambda, diagonal) in self.lambda.iter().zip(&self.diagonal) {
+            let lambda = Q::load(lambda);
+            largest.take(lambda);
+            strongest.take(lambda * lambda * Q::load(diagonal));
+        }
+        [largest.get(), strongest.get()]
+    }
+
+    #[inline(always)]
+    fn measure<Q: Quad>(&mut self, blocks: &[RowBlock]) -> [Four; 2] {
+        let mut largest = Largest::<Q>::new();
+        for (lambda, bounds) in self.lambda.iter_mut().zip(&self.bounds) {
+            let x = within(Q::load(lambda), bounds);
+            x.store(lambda);
+            largest.take(x);
+        }
+        self.y.fill([[0.0; 4]; 6]);
+        for block in blocks {
+            let range = block.range();
+            let mut sum = [Q::splat(0.0); 12];
+            for (row, lambda) in self.jacobian[range.clone()].iter().zip(&self.lambda[range]) {
+                plus_row(&mut sum, Q::load(lambda), row);
+            }
+            add_to_bodies(sum, &mut self.y, block.bodies);
+        }
+        self.product::<Q>(blocks);
+        let mut residual = Largest::<Q>::new();
+        for (row, bounds) in self.bounds.iter().enumerate() {
+            let (x, sigma) = (Q::load(&self.lambda[row]), Q::load(&self.sigma[row]));
+            let w = (Q::load(&self.jy[row]) + sigma * x) - Q::load(&self.rhs[row]);
+            let moved = x - w / Q::load(&self.diagonal[row]);
+            residual.take(x - within(moved, bounds));
+        }
+        [residual.get(), largest.get()]
+    }
+
+    #[inline(always)]
+    fn apply<Q: Quad>(&mut self, to: [bool; 4]) {
+        let to = Q::load(&[f64::from(to[0]), f64::from(to[1]), f64::from(to[2]), f64::from(to[3])]);
+        for (y, dy) in self.y.as_flattened_mut().iter_mut().zip(self.dy.as_flattened()) {
+            let before = Q::load(y);
+            to.where_positive(before + Q::load(dy), before).store(y);
+        }
+        for (lambda, change) in self.lambda.iter_mut().zip(&self.dlambda) {
+            let before = Q::load(lambda);
+            to.where_positive(before + Q::load(change), before).store(lambda);
+        }
+    }
+
+    /// Finds one correction. Returns the largest change of an acceleration; not a number if one is not.
+    #[inline(always)]
+    fn correct<Q: Quad>(&mut self, blocks: &[RowBlock], shape: &Symbolic, pass: Pass) -> Four {
+        let (first, zero) = (pass == Pass::First, Q::splat(0.0));
+        let sigma = if pass == Pass::Own { &self.sigma } else { &self.used_sigma };
+        for (dy, y) in self.dy.as_flattened_mut().iter_mut().zip(self.y.as_flattened()) {
+            (if first { zero } else { zero - Q::load(y) }).store(dy);
+        }
+        // Whether the bodies' part of the right-hand side is zero.
+        let mut at_rest = first;
+        for (block, whole) in blocks.iter().zip(&self.whole) {
+            let range = block.range();
+            if first && *whole {
+                self.dlambda[range.clone()].copy_from_slice(&self.rhs[range]);
+                continue;
+            }
+            at_rest = false;
+            let y = of_bodies::<Q>(&self.y, block.bodies);
+            for row in range.clone() {
+                let mut error = Q::load(&self.rhs[row]);
+                if !first {
+                    let jy = sum(terms(&self.jacobian[row], &y, [true; 2]));
+                    error = (error - jy) - Q::load(&sigma[row]) * Q::load(&self.lambda[row]);
+                }
+                Q::load(&self.weight[row]).where_positive(error, zero).store(&mut self.dlambda[row]);
+            }
+            let mut forces = [zero; 12];
+            for row in range {
+                plus_row(&mut forces, Q::load(&self.lambda[row]), &self.jacobian[row]);
+            }
+            add_to_bodies(forces, &mut self.dy, block.bodies);
+        }
+        self.solve_factored::<Q>(blocks, shape, at_rest);
+        let mut largest = [Largest::<Q>::new(); 2];
+        for dy in &self.dy {
+            for i in 0..6 {
+                largest[i % 2].take(Q::load(&dy[i]));
+            }
+        }
+        largest[0].with(largest[1]).get()
+    }
+
+    /// Solves with the factor: `dy` holds the right-hand side of the bodies and becomes their part of the solution, `dlambda` that of
+    /// the rows.
+    #[inline(always)]
+    fn solve_factored<Q: Quad>(&mut self, blocks: &[RowBlock], shape: &Symbolic, at_rest: bool) {
+        let zero = Q::splat(0.0);
+        let mut z = core::mem::take(&mut self.z);
+        for (dy, column) in self.dy.iter().zip(&shape.body_column) {
+            if *column != NONE {
+                store(load::<Q, 6>(dy), &mut z[shape.offset[*column as usize] as usize..]);
+            }
+        }
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            let own = place.own as usize;
+            let z = &mut z[shape.offset[own] as usize..shape.offset[own + 1] as usize];
+            let light = light_sides(block, place);
+            let count = block.range().len();
+            if at_rest || light == [false; 2] {
+                z[..count].copy_from_slice(&self.dlambda[block.range()]);
+            } else {
+                let dy = of_bodies::<Q>(&self.dy, block.bodies);
+                for (z, row) in z.iter_mut().zip(block.range()) {
+                    let product = sum(terms(&self.jacobian[row], &dy, light));
+                    let right = Q::load(&self.dlambda[row]) - product;
+                    Q::load(&self.weight[row]).where_positive(right, zero).store(z);
+                }
+            }
+            z[count..].fill([0.0; 4]);
+        }
+        self.factor.solve::<Q>(shape, &mut z);
+        for (dy, column) in self.dy.iter_mut().zip(&shape.body_column) {
+            if *column != NONE {
+                store(load::<Q, 6>(&z[shape.offset[*column as usize] as usize..]), dy);
+            }
+        }
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            let z = &z[shape.offset[place.own as usize] as usize..];
+            let light = light_sides(block, place);
+            let mut forces = [zero; 12];
+            for (row, z) in block.range().zip(z) {
+                let negative = zero - Q::load(z);
+                let force = Q::load(&self.weight[row]).where_positive(negative, zero);
+                force.store(&mut self.dlambda[row]);
+                plus_row(&mut forces, force, &self.jacobian[row]);
+            }
+            let [a, b, c, d, e, f, g, h, i, j, k, l] = forces;
+            if light[0] {
+                add([a, b, c, d, e, f], &mut self.dy[block.bodies[0] as usize]);
+            }
+            if light[1] {
+                add([g, h, i, j, k, l], &mut self.dy[block.bodies[1] as usize]);
+            }
+        }
+        self.z = z;
+    }
+
+    /// Whether the pivot of each raised row is so large that what its CFM was raised by hardly matters: `System::holds_firmly`.
+    pub fn hold_firmly(&self, blocks: &[RowBlock], shape: &Symbolic, firm: f64) -> [bool; 4] {
+        let mut holds = [true; 4];
+        for (block, place) in blocks.iter().zip(&shape.places) {
+            let own = place.own as usize;
+            let step = super::super::kernels::stride(usize::from(shape.size[own])) + 1;
+            let roots = self.factor.values[shape.start[own] as usize..].iter().step_by(step);
+            for (row, root) in block.range().zip(roots) {
+                for l in 0..4 {
+                    let used = self.used_sigma[row][l];
+                    let raised = self.sigma[row][l] != used && self.weight[row][l] != 0.0;
+                    holds[l] &= !raised || firm * used <= root[l] * root[l];
+                }
+            }
+        }
+        holds
+    }
+}

@@ -1,0 +1,102 @@
+//! Four problems of one shape solved at once, against each by itself.
+
+mod islands;
+
+use ferrode_lcp::{
+    ABREAST, AbreastWorkspace, NO_SPARSE_BODY, PivotingOptions, PivotingReport, PivotingWorkspace, RowState,
+    SparseLcp, solve_abreast, solve_pivoting,
+};
+use islands::{Island, Random};
+
+/// A tree of bodies on hinges, some with motors, on ball joints, and with a loop or two; `kind` decides the shape, `random` the numbers.
+fn figure(kind: u64, random: &mut Random) -> Island {
+    let cfm = [1e-10, 1e-5, 0.0][(kind % 3) as usize];
+    let mut island = Island::new(0.01, cfm);
+    let n = 8 + kind as u32 % 7;
+    for body in 0..n {
+        let (mass, size) = (random.range(0.1, 10.0), [0; 3].map(|_| random.range(0.1, 0.8)));
+        let velocity = [0; 6].map(|_| random.range(-1.0, 1.0));
+        island.add_body(mass, size, [f64::from(body), random.range(-0.3, 0.3), 0.0], velocity);
+    }
+    let mut shape = Random(kind + 1);
+    for body in 1..n {
+        // One body with many joints, the others with few.
+        let parent = if shape.below(3) == 0 { 0 } else { body - 1 };
+        let p = [f64::from(body) - 0.5, random.range(-0.1, 0.1), random.range(-0.1, 0.1)];
+        match shape.below(4) {
+            0 => island.ball(parent, body, p, random.vector().map(|x| 1e-3 * x)),
+            1 => island.hinge(parent, body, p, None, None),
+            _ => {
+                let most = if shape.below(2) == 0 { 1e-3 } else { 1e3 };
+                island.hinge(parent, body, p, Some((random.range(-1.0, 1.0), most)), None);
+            }
+        }
+    }
+    if kind.is_multiple_of(2) {
+        island.ball(n - 1, NO_SPARSE_BODY, [f64::from(n), 0.0, 0.0], [0.0; 3]);
+    }
+    if kind.is_multiple_of(5) {
+        island.ball(2, n - 2, [4.0, 0.5, 0.0], [0.0; 3]);
+    }
+    island
+}
+
+struct Answer {
+    report: PivotingReport,
+    x: Vec<f64>,
+    states: Vec<[Option<RowState>; 2]>,
+}
+
+/// What the island's rows do, each by itself, from the guess that it holds.
+fn alone(island: &mut Island) -> Answer {
+    let report = {
+        let mut problem = island.problem();
+        solve_pivoting(&mut problem, &PivotingOptions::default(), &mut PivotingWorkspace::new()).unwrap()
+    };
+    Answer { report, x: island.x.clone(), states: island.states.clone() }
+}
+
+fn together(islands: &mut [Island]) -> [Option<PivotingReport>; ABREAST] {
+    let mut problems: Vec<SparseLcp<'_>> = islands.iter_mut().map(Island::problem).collect();
+    let (mut first, mut work) = (PivotingWorkspace::new(), AbreastWorkspace::default());
+    solve_abreast(&mut problems, &PivotingOptions::default(), &mut first, &mut work)
+}
+
+fn bits(x: &[f64]) -> Vec<u64> {
+    // Zero has two.
+    x.iter().map(|x| (x + 0.0).to_bits()).collect()
+}
+
+#[test]
+fn four_at_once_have_the_answers_of_each_by_itself() {
+    let (mut answered, mut at_bounds) = (0, 0);
+    for kind in 0..60 {
+        let mut random = Random(1000 + kind);
+        let count = 2 + kind as usize % 3;
+        let mut islands: Vec<Island> = (0..count).map(|_| figure(kind, &mut random)).collect();
+        // Guesses are right where the first solution has left them.
+        let answers: Vec<Answer> = islands
+            .iter_mut()
+            .map(|island| {
+                alone(island);
+                alone(island)
+            })
+            .collect();
+        at_bounds += answers.iter().flat_map(|a| &a.states).filter(|s| s[1] != Some(RowState::Free)).count();
+        for island in &mut islands {
+            island.x.fill(f64::NAN);
+        }
+        let reports = together(&mut islands);
+        for ((island, answer), report) in islands.iter().zip(&answers).zip(reports) {
+            let Some(report) = report else { continue };
+            answered += 1;
+            assert_eq!(bits(&island.x), bits(&answer.x), "kind {kind}");
+            assert_eq!(island.states, answer.states);
+            assert_eq!((report.residual, report.largest), (answer.report.residual, answer.report.largest));
+            assert_eq!(report.factor_blocks, answer.report.factor_blocks);
+        }
+        assert!(reports[count..].iter().all(Option::is_none));
+    }
+    println!("{answered} of 180 answered, {at_bounds} rows at bounds");
+    assert!(answered >= 170 && at_bounds > 100, "{answered}, {at_bounds}");
+}
