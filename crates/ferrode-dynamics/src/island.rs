@@ -2,6 +2,7 @@
 
 use crate::World;
 use crate::arena::NIL;
+use ferrode_lcp::ABREAST;
 
 /// Bodies and joints of all islands, in the order in which they are stepped: the order of rows depends on it, so it is
 /// ODE's.
@@ -24,6 +25,16 @@ impl Islands {
         let first = island.checked_sub(1).map_or((0, 0), |before| self.ends[before]);
         let end = self.ends[island];
         (&self.bodies[first.0..end.0], &self.joints[first.1..end.1])
+    }
+
+    /// How many islands, from this one on, have as many bodies and joints.
+    pub fn alike(&self, island: usize) -> usize {
+        let size = |island: usize| {
+            let (bodies, joints) = self.of(island);
+            (bodies.len(), joints.len())
+        };
+        let first = size(island);
+        1 + (island + 1..self.ends.len()).take(ABREAST - 1).take_while(|other| size(*other) == first).count()
     }
 }
 

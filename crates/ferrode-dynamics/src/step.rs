@@ -15,6 +15,7 @@ use crate::solve::direct::{self, ImpactLaw, IslandWork};
 use crate::solve::substep;
 use crate::timing::Phase;
 use crate::{Error, StepReport, World, gyroscopic, integrate};
+use ferrode_lcp::ABREAST;
 use ferrode_math::random::OdeRandom;
 use ferrode_math::simd::{Compute, compute_wide};
 use ferrode_math::stage::chunks;
@@ -196,7 +197,7 @@ impl World {
         self.judge_bodies(h, report);
         self.find_islands(&mut stepping.islands);
         match stepper {
-            Stepper::Direct => self.step_direct(h, &mut stepping, moved.observer, report),
+            Stepper::Direct => self.step_direct(h, &mut stepping, moved, report),
             _ => {
                 // What `Direct` keeps from step to step grows old meanwhile.
                 direct::begin_step(&mut stepping.direct);
@@ -213,24 +214,26 @@ impl World {
         &mut self,
         h: f64,
         stepping: &mut Stepping,
-        mut moved: Option<MovedObserver<'_>>,
+        Moved { mut observer, looks_only }: Moved<'_>,
         report: &mut StepReport,
     ) {
         let Stepping { islands, works, moved_island, direct, impacts, .. } = stepping;
         let ctx = self.step_context(h);
         direct::begin_step(direct);
         let projects = self.params.direct.project_joints;
-        let at_once = if moved.is_none() { self.islands_at_once(islands) } else { 1 };
+        let at_once = if looks_only { self.islands_at_once(islands) } else { 1 };
         if works.len() < at_once {
             works.resize_with(at_once, IslandWork::default);
         }
         let mut first = 0;
         while first < islands.ends.len() {
-            let works = &mut works[..at_once.min(islands.ends.len() - first)];
+            // Without threads only those gain that are solved together.
+            let most = if at_once == ABREAST { islands.alike(first) } else { islands.ends.len() - first };
+            let works = &mut works[..at_once.min(most)];
             for (i, work) in works.iter_mut().enumerate() {
                 let (bodies, joints) = islands.of(first + i);
-                // Without an observer nobody can have destroyed any.
-                let survivors = if moved.is_some() { self.survivors(bodies, joints) } else { None };
+                // An observer that only looks destroys none.
+                let survivors = if looks_only { None } else { self.survivors(bodies, joints) };
                 match survivors {
                     Some((bodies, joints)) => self.gather(&bodies, &joints, &mut work.island),
                     None => self.gather(bodies, joints, &mut work.island),
@@ -242,8 +245,8 @@ impl World {
                 [work] => work.solve(h, &self.params.direct, report.islands, direct),
                 works => {
                     let (settings, number, past) = (&self.params.direct, report.islands, &*direct);
-                    self.crew.each(chunks(works, 1), |i, work| {
-                        work.iter_mut().for_each(|work| work.solve(h, settings, number + i, past));
+                    self.crew.each(chunks(works, ABREAST), |i, works| {
+                        direct::solve_all(works, h, settings, number + ABREAST * i, past);
                     });
                 }
             }
@@ -263,7 +266,7 @@ impl World {
                 if projects {
                     self.move_and_project(island, moved_island, &ctx, number + i, direct);
                 }
-                let observer = moved.as_mut().map(|moved| &mut **moved as MovedObserver<'_>);
+                let observer = observer.as_mut().map(|observer| &mut **observer as MovedObserver<'_>);
                 self.move_bodies(island, (Stepper::Direct, h, projects), observer, report);
             }
             self.timing.spent_on(Phase::Integrate);
@@ -272,15 +275,17 @@ impl World {
         direct::end_step(direct);
     }
 
-    /// How many islands may be solved at the same time: one, unless there are threads for more, enough to do, and no callback that an earlier
-    /// one could change a later one by.
+    /// How many islands may be solved at the same time: one if a callback of an earlier one could change a later one.
     fn islands_at_once(&self, islands: &Islands) -> usize {
         let threads = self.crew.threads();
-        if threads == 1 || islands.joints.len() < LEAST_JOINTS || islands.ends.len() < 2 {
-            return 1;
-        }
         let watched = |slot: &u32| self.bodies.get(*slot).is_some_and(|body| body.moved.is_some());
-        if islands.bodies.iter().any(watched) { 1 } else { ISLANDS_PER_THREAD * threads }
+        if islands.ends.len() < 2 || islands.bodies.iter().any(watched) {
+            1
+        } else if threads == 1 || islands.joints.len() < LEAST_JOINTS {
+            ABREAST
+        } else {
+            ISLANDS_PER_THREAD * threads
+        }
     }
 
     /// Writes the rows of an island that is gathered.

@@ -12,19 +12,22 @@ use crate::sparse::system::{FINE, FIRM, MOST_CORRECTIONS, Pass, ROUGH};
 /// How many problems are solved at once.
 pub const ABREAST: usize = 4;
 
+/// So often states are corrected, before each problem is left to itself.
+const MOST_ROUNDS: u32 = 4;
+
 /// Memory for [`solve_abreast`].
 #[derive(Clone, Debug, Default)]
 pub struct AbreastWorkspace {
     numbers: Abreast,
     /// The state of each row.
     state: Vec<[RowState; ABREAST]>,
-    /// The rows that have a bound in one of the problems.
-    bounded: Vec<u32>,
+    /// The rows that have a bound in one of the problems, and their blocks.
+    bounded: Vec<[u32; 2]>,
 }
 
-/// Solves up to four problems whose rows act on the same bodies in the same order, where that takes no pivoting: where each row's state is as
-/// guessed, and nothing else is amiss. Each answer is, to the bit, that of [`solve_pivoting`](super::solve_pivoting), which is to be asked
-/// where there is none. The shape is kept in `first`, the first problem's workspace.
+/// Solves up to four problems whose rows act on the same bodies in the same order, where that takes few pivots and nothing is amiss. Each
+/// answer is, to the bit, that of [`solve_pivoting`](super::solve_pivoting), which is to be asked where there is none. The shape is kept in
+/// `first`, the first problem's workspace.
 pub fn solve_abreast(
     problems: &mut [SparseLcp<'_>],
     options: &PivotingOptions,
@@ -80,12 +83,30 @@ impl Together<'_, '_> {
             return [None; ABREAST];
         }
         self.guess();
-        self.do_all(Task::Factorise);
-        let (largest, mut refinements) = self.solve();
-        self.refine(&mut refinements, ROUGH);
-        self.do_all(Task::Product);
-        let right = [0, 1, 2, 3].map(|l| largest[l].is_finite() && self.states_are_right(l, largest[l]));
-        if right == [false; ABREAST] {
+        let mut rounds = [None; ABREAST];
+        let mut refinements = [Refinement::default(); ABREAST];
+        for round in 1..=MOST_ROUNDS {
+            self.hold_states();
+            self.do_all(Task::Factorise);
+            let largest;
+            (largest, refinements) = self.solve();
+            self.refine(&mut refinements, ROUGH);
+            self.do_all(Task::Product);
+            let mut wrong = false;
+            for l in 0..self.problems.len() {
+                if rounds[l].is_none() && largest[l].is_finite() {
+                    match self.judge(l, largest[l]) {
+                        Judgement::Right => rounds[l] = Some(round),
+                        Judgement::Wrong => wrong = true,
+                        Judgement::Degenerate => {}
+                    }
+                }
+            }
+            if !wrong {
+                break;
+            }
+        }
+        if rounds == [None; ABREAST] {
             return [None; ABREAST];
         }
         let firm = self.work.numbers.hold_firmly(self.problems[0].blocks, self.shape, FIRM);
@@ -99,14 +120,15 @@ impl Together<'_, '_> {
         let [residual, largest] = self.do_all(Task::Measure);
         let mut reports = [None; ABREAST];
         for (l, problem) in self.problems.iter_mut().enumerate() {
+            let Some(factorisations) = rounds[l] else { continue };
             let report = PivotingReport {
-                factorisations: 1,
+                factorisations,
                 residual: residual[l],
                 largest: largest[l],
                 factor_blocks: self.shape.blocks(),
                 ..PivotingReport::default()
             };
-            if !right[l] || !report.certified() {
+            if !report.certified() {
                 continue;
             }
             reports[l] = Some(report);
@@ -126,7 +148,6 @@ impl Together<'_, '_> {
 
     fn load(&mut self) {
         let p = &self.problems[0];
-        let m = p.jacobian.len();
         let mut islands = [numbers(p); ABREAST];
         for (island, p) in islands.iter_mut().zip(self.problems.iter()) {
             *island = numbers(p);
@@ -134,8 +155,17 @@ impl Together<'_, '_> {
         let AbreastWorkspace { numbers, bounded, .. } = &mut *self.work;
         numbers.load(&islands, self.shape);
         bounded.clear();
-        let unbounded = [[f64::NEG_INFINITY; ABREAST], [f64::INFINITY; ABREAST]];
-        bounded.extend((0..m as u32).filter(|row| numbers.bounds[*row as usize] != unbounded));
+        numbers.bounded.clear();
+        for (i, block) in p.blocks.iter().enumerate() {
+            let has_bound = |row: &u32| {
+                let row = *row as usize;
+                numbers.lo[row] != [f64::NEG_INFINITY; ABREAST] || numbers.hi[row] != [f64::INFINITY; ABREAST]
+            };
+            let rows = (block.first..block.first + block.count).filter(has_bound);
+            let before = bounded.len();
+            bounded.extend(rows.map(|row| [row, i as u32]));
+            numbers.bounded.push(bounded.len() > before);
+        }
     }
 
     /// Takes the rows' states as guessed, and the forces of those that are not free.
@@ -143,9 +173,8 @@ impl Together<'_, '_> {
         let AbreastWorkspace { numbers, state, bounded } = &mut *self.work;
         state.clear();
         state.resize(numbers.rhs.len(), [RowState::Free; ABREAST]);
-        numbers.lambda.fill([0.0; ABREAST]);
-        for row in bounded.iter().map(|row| *row as usize) {
-            let [lo, hi] = numbers.bounds[row];
+        for row in bounded.iter().map(|[row, _]| *row as usize) {
+            let (lo, hi) = (numbers.lo[row], numbers.hi[row]);
             for l in 0..ABREAST {
                 if lo[l] == f64::NEG_INFINITY && hi[l] == f64::INFINITY {
                     continue;
@@ -156,6 +185,17 @@ impl Together<'_, '_> {
                     if alone == 0.0 { RowState::Free } else { state_of(alone, lo[l], hi[l]) }
                 });
                 state[row][l] = possible(guess, lo[l], hi[l]);
+            }
+        }
+    }
+
+    /// Has rows free or at their bounds, as their states say.
+    fn hold_states(&mut self) {
+        let AbreastWorkspace { numbers, state, bounded } = &mut *self.work;
+        numbers.begin();
+        for row in bounded.iter().map(|[row, _]| *row as usize) {
+            let (lo, hi) = (numbers.lo[row], numbers.hi[row]);
+            for l in 0..ABREAST {
                 numbers.lambda[row][l] = match state[row][l] {
                     RowState::Free => 0.0,
                     RowState::Lower => lo[l],
@@ -163,8 +203,8 @@ impl Together<'_, '_> {
                 };
             }
         }
-        let free = state.iter().map(|state| state.map(|state| state == RowState::Free));
-        numbers.set_free(free, self.problems[0].blocks);
+        let given = |row: &[u32; 2]| (*row, state[row[0] as usize].map(|state| state != RowState::Free));
+        numbers.hold(bounded.iter().map(given));
     }
 
     /// The first solution, and the largest forces.
@@ -202,22 +242,44 @@ impl Together<'_, '_> {
         }
     }
 
-    /// Whether the states of a problem's rows are right, and none is degenerate.
-    fn states_are_right(&self, l: usize, largest: f64) -> bool {
-        let AbreastWorkspace { numbers: s, state, bounded } = &*self.work;
+    /// Whether the states of a problem's rows are right; takes better ones where not.
+    fn judge(&mut self, l: usize, largest: f64) -> Judgement {
+        let AbreastWorkspace { numbers: s, state, bounded } = &mut *self.work;
         let (tolerance, close) = (WRONG * (1.0 + largest), DEGENERATE * (1.0 + largest));
-        bounded.iter().map(|row| *row as usize).all(|row| {
-            let [lo, hi] = s.bounds[row].map(|bound| bound[l]);
+        let (mut wrong, mut degenerate) = (false, false);
+        for row in bounded.iter().map(|[row, _]| *row as usize) {
+            let (lo, hi) = (s.lo[row][l], s.hi[row][l]);
             let (lambda, rhs) = (s.lambda[row][l], s.rhs[row][l]);
             let slack = s.jy[row][l] + s.sigma[row][l] * lambda - rhs;
             let least = tolerance * s.diagonal[row][l] + NOISE * rhs.abs();
-            match state[row][l] {
-                // Within its bounds, and not at them.
-                RowState::Free => lambda - lo >= close && hi - lambda >= close,
-                _ if lo == hi => true,
-                RowState::Lower => slack >= -least,
-                RowState::Upper => slack <= least,
-            }
-        })
+            let state = &mut state[row][l];
+            let better = match *state {
+                RowState::Free if lambda < lo - tolerance => RowState::Lower,
+                RowState::Free if lambda > hi + tolerance => RowState::Upper,
+                RowState::Free => {
+                    degenerate |= lambda - lo < close || hi - lambda < close;
+                    continue;
+                }
+                _ if lo == hi => continue,
+                RowState::Lower if slack < -least => RowState::Free,
+                RowState::Upper if slack > least => RowState::Free,
+                _ => continue,
+            };
+            (*state, wrong) = (better, true);
+        }
+        match (wrong, degenerate) {
+            (true, _) => Judgement::Wrong,
+            (false, true) => Judgement::Degenerate,
+            (false, false) => Judgement::Right,
+        }
     }
+}
+
+/// What is thought of the states of a problem's rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Judgement {
+    Right,
+    Wrong,
+    /// Right, but some row could have either of two.
+    Degenerate,
 }

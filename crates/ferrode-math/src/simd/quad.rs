@@ -42,6 +42,9 @@ pub trait Quad:
     fn join(low: Self::Pair, high: Self::Pair) -> Self;
     /// `(x₀ + x₁) + (x₂ + x₃)` of each of four.
     fn sums(of: [Self; 4]) -> Self;
+    /// The first numbers of each of four, the second ones, and so on.
+    #[must_use]
+    fn transpose(of: [Self; 4]) -> [Self; 4];
     /// The square roots.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -160,6 +163,11 @@ impl Quad for Array<4> {
     }
 
     #[inline(always)]
+    fn transpose([a, b, c, d]: [Self; 4]) -> [Self; 4] {
+        core::array::from_fn(|l| Self([a.0[l], b.0[l], c.0[l], d.0[l]]))
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Self(self.0.map(f64::sqrt))
     }
@@ -230,9 +238,14 @@ mod tests {
             ((q * q / Q::splat(0.3)).sqrt()).store(&mut roots);
             q.max(Q::splat(f64::NAN)).max(Q::splat(1e-3)).store(&mut larger);
             (q - Q::splat(0.1)).where_positive(q, Q::splat(f64::NAN)).store(&mut chosen);
+            let mut turned = [[0.0; 4]; 4];
+            for (of, to) in Q::transpose([q, q * q, q + q, q - q * q]).into_iter().zip(&mut turned) {
+                of.store(to);
+            }
             let sum = (q.fold() + p).sum();
             let all = four.iter().chain(&two).chain(&sums).chain(&joined);
-            let all = all.chain(&roots).chain(&larger).chain(&chosen).chain([&sum]);
+            let all =
+                all.chain(turned.as_flattened()).chain(&roots).chain(&larger).chain(&chosen).chain([&sum]);
             all.map(|x| x.to_bits()).collect()
         }
     }

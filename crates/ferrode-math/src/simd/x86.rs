@@ -712,6 +712,22 @@ impl Quad for F64x4 {
     }
 
     #[inline(always)]
+    fn transpose([a, b, c, d]: [Self; 4]) -> [Self; 4] {
+        // SAFETY: the machine has AVX2.
+        unsafe {
+            // [a₀, b₀, a₂, b₂] and [a₁, b₁, a₃, b₃], and so for the others.
+            let (ab, ab_odd) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpackhi_pd(a.0, b.0));
+            let (cd, cd_odd) = (_mm256_unpacklo_pd(c.0, d.0), _mm256_unpackhi_pd(c.0, d.0));
+            [
+                Self(_mm256_permute2f128_pd::<0x20>(ab, cd)),
+                Self(_mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd)),
+                Self(_mm256_permute2f128_pd::<0x31>(ab, cd)),
+                Self(_mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd)),
+            ]
+        }
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         // SAFETY: the machine has AVX2.
         Self(unsafe { _mm256_sqrt_pd(self.0) })

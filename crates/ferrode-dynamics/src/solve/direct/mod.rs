@@ -5,6 +5,7 @@
 //! bounds at the solution without friction, so both have the same answer; the second one starts from what
 //! the rows did in the step before ([`warm`]).
 
+mod abreast;
 mod arrange;
 mod cone;
 mod dense;
@@ -17,6 +18,8 @@ use super::{FreeMotion, Solved, free_motions, right_hand_side};
 use crate::report::{DirectMethod, IslandSolve};
 use crate::rows::{NO_FRICTION_INDEX, Row};
 use crate::step::{Island, JointSpan, SolverBody};
+pub(crate) use abreast::solve_all;
+use ferrode_lcp::{PivotingReport, SparseLcp};
 use ferrode_math::Vec3;
 use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 pub(crate) use project::{Displacement, keep_rigid};
@@ -169,23 +172,46 @@ impl IslandWork {
     /// Finds the forces of the island's rows, and adds them to all others of its bodies; `number` is the island's in this step. `past` is
     /// only read.
     pub fn solve(&mut self, h: f64, settings: &DirectSettings, number: usize, past: &Workspace) {
+        self.begin(h);
+        self.solve_alone(h, Problem { settings, number, warm: &past.warm });
+    }
+
+    /// Makes ready what all methods need.
+    fn begin(&mut self, h: f64) {
         let Self { island, solved, report, memory } = self;
         let m = island.rows.len();
         island.lambda.clear();
         island.lambda.resize(m, 0.0);
         *report = IslandSolve { rows: m, ..IslandSolve::default() };
         *solved = Solved::Completely;
-        if m == 0 {
+        if m > 0 {
+            let fps = 1.0 / h;
+            free_motions(&island.bodies, fps, &mut memory.free);
+            memory.system.load(island, fps, &memory.free);
+        }
+    }
+
+    fn solve_alone(&mut self, h: f64, problem: Problem<'_>) {
+        let Self { island, solved, report, memory } = self;
+        if island.rows.is_empty() {
             return;
         }
-        let fps = 1.0 / h;
-        free_motions(&island.bodies, fps, &mut memory.free);
-        memory.system.load(island, fps, &memory.free);
-        let problem = Problem { settings, number, warm: &past.warm };
         *solved = solve_boxed(island, problem, Start::Step, memory, report);
-        if settings.friction == FrictionLaw::Cone && memory.cone.find(island) {
-            *solved = solve_cone(island, fps, problem, memory, report);
+        if problem.settings.friction == FrictionLaw::Cone && memory.cone.find(island) {
+            *solved = solve_cone(island, 1.0 / h, problem, memory, report);
         }
+        sum_forces(island, &mut memory.forces);
+    }
+
+    /// The problem that was made ready for the sparse method.
+    fn lcp(&mut self) -> SparseLcp<'_> {
+        self.memory.sparse.lcp(&mut self.island, &self.memory.system)
+    }
+
+    /// Takes the sparse method's answer, whose forces are in the island.
+    fn take_answer(&mut self, answer: PivotingReport, settings: &DirectSettings) {
+        let Self { island, solved, report, memory } = self;
+        *solved = memory.sparse.end(island, answer, (settings, Start::Step), report);
         sum_forces(island, &mut memory.forces);
     }
 
@@ -222,8 +248,7 @@ fn solve_boxed(
     report: &mut IslandSolve,
 ) -> Solved {
     let settings = problem.settings;
-    let dense = island.rows.len() < settings.dense_rows
-        || (settings.dense_rows > 0 && memory.system.is_small_figure(island.rows.len()));
+    let dense = memory.system.is_for_dense(island.rows.len(), settings);
     if dense {
         memory.spans.list(island);
         let solved = dense::solve(island, &memory.system, &memory.spans, &mut memory.dense, report);
@@ -282,6 +307,11 @@ const MOST_FIGURE_ROWS: usize = 160;
 const MOST_HELD_ROWS: [usize; 2] = [60, 96];
 
 impl RowSystem {
+    /// Whether the dense method is faster.
+    fn is_for_dense(&self, rows: usize, settings: &DirectSettings) -> bool {
+        rows < settings.dense_rows || (settings.dense_rows > 0 && self.is_small_figure(rows))
+    }
+
     /// Whether the rows are those of a jointed figure, such as a person on the ground, and few enough for the dense method. Measured: the
     /// sparse one is ahead where contacts are many to each row without bounds, and on long chains.
     fn is_small_figure(&self, rows: usize) -> bool {

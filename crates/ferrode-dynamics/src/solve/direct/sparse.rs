@@ -4,15 +4,15 @@
 
 use super::twelve::Root;
 use super::warm::{Expected, Key, WarmStart};
-use super::{Problem, RowSystem, Start};
+use super::{DirectSettings, Problem, RowSystem, Start};
 use crate::arena::NIL;
 use crate::report::{DirectMethod, IslandSolve};
 use crate::rows::RowKind;
 use crate::solve::Solved;
 use crate::step::{Island, JointSpan};
 use ferrode_lcp::{
-    NO_SPARSE_BODY, PivotingOptions, PivotingWorkspace, RowBlock, RowState, ScaledRow, SparseLcp,
-    solve_pivoting,
+    AbreastWorkspace, NO_SPARSE_BODY, PivotingOptions, PivotingReport, PivotingWorkspace, RowBlock, RowState,
+    ScaledRow, SparseLcp, solve_pivoting,
 };
 use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 use ferrode_math::{Mat3, Vec3};
@@ -28,6 +28,7 @@ pub(super) struct Workspace {
     pivoting: PivotingWorkspace,
     /// What names the rows of each span, if that was asked.
     keys: Vec<Option<(Key, Vec3)>>,
+    abreast: AbreastWorkspace,
     expected: Expected,
     /// The states of a step's first answer, to be remembered; empty if there is none.
     answered: Vec<[Option<RowState>; 2]>,
@@ -51,50 +52,18 @@ fn root(inv_mass: f64, inv_inertia: &Mat3) -> Root {
 pub(super) fn solve(
     island: &mut Island,
     system: &RowSystem,
-    Problem { settings, number, warm }: Problem<'_>,
+    problem: Problem<'_>,
     start: Start,
     work: &mut Workspace,
     report: &mut IslandSolve,
 ) -> Solved {
-    work.load(island);
-    if start == Start::Step || work.states.len() != island.rows.len() {
-        work.guess(island, settings.warm_start.then_some(warm));
-    }
-    let mut problem = SparseLcp {
-        bodies: island.bodies.len(),
-        blocks: &work.blocks,
-        jacobian: &work.jacobian,
-        sigma: &system.sigma,
-        rhs: &system.rhs,
-        lo: &system.lo,
-        hi: &system.hi,
-        findex: &system.findex,
-        states: &mut work.states,
-        x: &mut island.lambda,
-    };
-    let options = PivotingOptions {
-        max_factorisations: settings.max_factorisations,
-        most_dense_rows: settings.most_dense_rows,
-        topology: number,
-    };
+    work.begin(island, problem, start);
+    let mut pivoting = core::mem::take(&mut work.pivoting);
+    let answer = solve_pivoting(&mut work.lcp(island, system), &options(problem), &mut pivoting);
+    work.pivoting = pivoting;
     report.method = DirectMethod::BlockPivoting;
-    match solve_pivoting(&mut problem, &options, &mut work.pivoting) {
-        Ok(answer) => {
-            report.factorisations = answer.factorisations;
-            report.newton_steps = answer.newton_steps;
-            report.fell_back |= answer.fell_back;
-            report.residual = answer.residual;
-            report.largest_force = answer.largest;
-            report.factor_blocks = answer.factor_blocks;
-            if !island.lambda.iter().all(|x| x.is_finite()) {
-                island.lambda.fill(0.0);
-                return Solved::Partly;
-            }
-            if settings.warm_start && start == Start::Step {
-                work.answered.clone_from(&work.states);
-            }
-            if report.certified() { Solved::Completely } else { Solved::Partly }
-        }
+    match answer {
+        Ok(answer) => work.end(island, answer, (problem.settings, start), report),
         Err(_) => {
             // Bounds that exclude zero: no force rather than a wrong one.
             island.lambda.fill(0.0);
@@ -104,7 +73,73 @@ pub(super) fn solve(
     }
 }
 
+pub(super) fn options(Problem { settings, number, .. }: Problem<'_>) -> PivotingOptions {
+    PivotingOptions {
+        max_factorisations: settings.max_factorisations,
+        most_dense_rows: settings.most_dense_rows,
+        topology: number,
+    }
+}
+
 impl Workspace {
+    /// Makes the rows and their guesses ready.
+    pub fn begin(&mut self, island: &Island, Problem { settings, warm, .. }: Problem<'_>, start: Start) {
+        self.load(island);
+        if start == Start::Step || self.states.len() != island.rows.len() {
+            self.guess(island, settings.warm_start.then_some(warm));
+        }
+    }
+
+    /// The problem that is ready; its answer goes to the island.
+    pub fn lcp<'a>(&'a mut self, island: &'a mut Island, system: &'a RowSystem) -> SparseLcp<'a> {
+        SparseLcp {
+            bodies: island.bodies.len(),
+            blocks: &self.blocks,
+            jacobian: &self.jacobian,
+            sigma: &system.sigma,
+            rhs: &system.rhs,
+            lo: &system.lo,
+            hi: &system.hi,
+            findex: &system.findex,
+            states: &mut self.states,
+            x: &mut island.lambda,
+        }
+    }
+
+    /// Reports an answer.
+    pub fn end(
+        &mut self,
+        island: &mut Island,
+        answer: PivotingReport,
+        (settings, start): (&DirectSettings, Start),
+        report: &mut IslandSolve,
+    ) -> Solved {
+        report.method = DirectMethod::BlockPivoting;
+        report.factorisations = answer.factorisations;
+        report.newton_steps = answer.newton_steps;
+        report.fell_back |= answer.fell_back;
+        report.residual = answer.residual;
+        report.largest_force = answer.largest;
+        report.factor_blocks = answer.factor_blocks;
+        if !island.lambda.iter().all(|x| x.is_finite()) {
+            island.lambda.fill(0.0);
+            return Solved::Partly;
+        }
+        if settings.warm_start && start == Start::Step {
+            self.answered.clone_from(&self.states);
+        }
+        if report.certified() { Solved::Completely } else { Solved::Partly }
+    }
+
+    /// Lends out the memory of solves.
+    pub fn take_memory(&mut self) -> (PivotingWorkspace, AbreastWorkspace) {
+        (core::mem::take(&mut self.pivoting), core::mem::take(&mut self.abreast))
+    }
+
+    pub fn give_memory(&mut self, pivoting: PivotingWorkspace, abreast: AbreastWorkspace) {
+        (self.pivoting, self.abreast) = (pivoting, abreast);
+    }
+
     fn load(&mut self, island: &Island) {
         self.roots.clear();
         self.roots.extend(island.bodies.iter().map(|b| root(b.inv_mass, &b.inv_inertia)));

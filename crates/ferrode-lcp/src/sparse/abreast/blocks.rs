@@ -5,6 +5,22 @@ use super::super::kernels::stride;
 use super::Four;
 use ferrode_math::simd::Quad;
 
+// Where a loop's bounds depend on the column, columns are constants to the compiler: only then are sums kept in registers.
+
+/// Calls a kernel for each of three or six columns in turn.
+macro_rules! each_column {
+    ($n:expr, $f:ident, [$($size:tt),*], $x:tt) => {
+        $f::<$($size,)* 0> $x;
+        $f::<$($size,)* 1> $x;
+        $f::<$($size,)* 2> $x;
+        if $n == 6 {
+            $f::<$($size,)* 3> $x;
+            $f::<$($size,)* 4> $x;
+            $f::<$($size,)* 5> $x;
+        }
+    };
+}
+
 /// The twelve numbers of a row, six for each of its bodies.
 pub(super) type Row = [Four; 12];
 
@@ -99,6 +115,16 @@ pub(super) fn plus_row<Q: Quad>(sum: &mut [Q; 12], s: Q, row: &Row) {
 #[inline(always)]
 pub(super) fn sub_square<Q: Quad, const H: usize>(out: &mut [Four], rows: &[Row], sides: [bool; 2]) {
     let out = &mut out[..stride(H) * H];
+    match sides {
+        [true, true] => sub_square_of::<Q, H>(out, rows, [true, true]),
+        [true, false] => sub_square_of::<Q, H>(out, rows, [true, false]),
+        [false, true] => sub_square_of::<Q, H>(out, rows, [false, true]),
+        [false, false] => {}
+    }
+}
+
+#[inline(always)]
+fn sub_square_of<Q: Quad, const H: usize>(out: &mut [Four], rows: &[Row], sides: [bool; 2]) {
     for (c, with) in rows.iter().take(H).enumerate() {
         let with = load::<Q, 12>(with);
         for (r, row) in rows.iter().take(H).enumerate().skip(c) {
@@ -135,23 +161,25 @@ pub(super) fn sub_product<Q: Quad, const H: usize>(
 pub(super) fn sub_aat<Q: Quad, const R: usize, const D: usize>(t: &mut [Four], a: &[Four], sign: f64) {
     let (t, a) = (&mut t[..stride(R) * R], &a[..stride(R) * D]);
     let sign = Q::splat(sign);
-    for c in 0..R {
-        let with = Q::load(&a[c]);
-        let mut sum = [Q::splat(0.0); R];
-        for r in c..R {
-            sum[r] = Q::load(&a[r]) * with;
+    each_column!(R, aat_column, [Q, R, D], (t, a, sign));
+}
+
+#[inline(always)]
+fn aat_column<Q: Quad, const R: usize, const D: usize, const C: usize>(t: &mut [Four], a: &[Four], sign: Q) {
+    let with = Q::load(&a[C]);
+    let mut sum = [Q::splat(0.0); R];
+    for r in C..R {
+        sum[r] = Q::load(&a[r]) * with;
+    }
+    for d in 1..D {
+        let with = Q::load(&a[stride(R) * d + C]);
+        for r in C..R {
+            sum[r] = sum[r] + Q::load(&a[stride(R) * d + r]) * with;
         }
-        for d in 1..D {
-            let a = &a[stride(R) * d..][..R];
-            let with = Q::load(&a[c]);
-            for r in c..R {
-                sum[r] = sum[r] + Q::load(&a[r]) * with;
-            }
-        }
-        for r in c..R {
-            let t = &mut t[stride(R) * c + r];
-            (Q::load(t) - sum[r] * sign).store(t);
-        }
+    }
+    for r in C..R {
+        let t = &mut t[stride(R) * C + r];
+        (Q::load(t) - sum[r] * sign).store(t);
     }
 }
 
@@ -188,47 +216,68 @@ pub(super) fn sub_abt<Q: Quad, const R: usize, const C: usize, const D: usize>(
 /// `sign h = L L^T` in place, lower triangle; writes the rows of `L^-1`, without the zeros. A pivot that is not positive is replaced by 1.
 #[inline(always)]
 pub(super) fn cholesky<Q: Quad, const N: usize>(h: &mut [Four], inverse: &mut [Four], sign: f64) {
-    let s = stride(N);
-    let (h, inverse) = (&mut h[..s * N], &mut inverse[..s * N]);
+    let (h, inverse) = (&mut h[..stride(N) * N], &mut inverse[..stride(N) * N]);
     let (sign, one) = (Q::splat(sign), Q::splat(1.0));
     let (mut pivots, mut over) = ([one; N], [one; N]);
-    for c in 0..N {
-        let mut column = load::<Q, N>(&h[s * c..]);
-        for x in &mut column[c..] {
-            *x = *x * sign;
-        }
-        for q in 0..c {
-            let factor = Q::load(&h[s * q + c]) * over[q];
-            for r in c..N {
-                column[r] = column[r] - Q::load(&h[s * q + r]) * factor;
-            }
-        }
-        for r in c..N {
-            column[r].store(&mut h[s * c + r]);
-        }
-        pivots[c] = column[c].where_positive(column[c], one);
-        over[c] = one / pivots[c];
+    each_column!(N, eliminate, [Q, N], (h, &mut pivots, &mut over, sign));
+    each_column!(N, finish, [Q, N], (h, inverse, &pivots, &over));
+}
+
+/// Column C of `V` in `h = V D^-1 V^T`.
+#[inline(always)]
+fn eliminate<Q: Quad, const N: usize, const C: usize>(
+    h: &mut [Four],
+    pivots: &mut [Q; N],
+    over: &mut [Q; N],
+    sign: Q,
+) {
+    let (s, one) = (stride(N), Q::splat(1.0));
+    let mut column = [one; N];
+    for r in C..N {
+        column[r] = Q::load(&h[s * C + r]) * sign;
     }
-    for c in 0..N {
-        let root = pivots[c].sqrt();
-        let inv = root * over[c];
-        root.store(&mut h[s * c + c]);
-        for r in c + 1..N {
-            let h = &mut h[s * c + r];
-            (Q::load(h) * inv).store(h);
+    for q in 0..C {
+        let factor = Q::load(&h[s * q + C]) * over[q];
+        for r in C..N {
+            column[r] = column[r] - Q::load(&h[s * q + r]) * factor;
         }
-        let mut row = [Q::splat(0.0); N];
-        for q in 0..c {
-            let factor = Q::load(&h[s * q + c]);
-            for k in 0..=q {
+    }
+    for r in C..N {
+        column[r].store(&mut h[s * C + r]);
+    }
+    pivots[C] = column[C].where_positive(column[C], one);
+    over[C] = one / pivots[C];
+}
+
+/// Column C of `L`, and row C of its inverse.
+#[inline(always)]
+fn finish<Q: Quad, const N: usize, const C: usize>(
+    h: &mut [Four],
+    inverse: &mut [Four],
+    pivots: &[Q; N],
+    over: &[Q; N],
+) {
+    let s = stride(N);
+    let root = pivots[C].sqrt();
+    let inv = root * over[C];
+    root.store(&mut h[s * C + C]);
+    for r in C + 1..N {
+        let h = &mut h[s * C + r];
+        (Q::load(h) * inv).store(h);
+    }
+    let mut row = [Q::splat(0.0); N];
+    for q in 0..C {
+        let factor = Q::load(&h[s * q + C]);
+        for k in 0..C {
+            if k <= q {
                 row[k] = row[k] - Q::load(&inverse[s * q + k]) * factor;
             }
         }
-        for k in 0..c {
-            (row[k] * inv).store(&mut inverse[s * c + k]);
-        }
-        inv.store(&mut inverse[s * c + c]);
     }
+    for k in 0..C {
+        (row[k] * inv).store(&mut inverse[s * C + k]);
+    }
+    inv.store(&mut inverse[s * C + C]);
 }
 
 /// `x = x L^-T` for a lower triangle and the rows of its inverse, of which the diagonal is read; `x` is R x C.
@@ -239,21 +288,27 @@ pub(super) fn solve_right<Q: Quad, const R: usize, const C: usize>(
     inverse: &[Four],
 ) {
     let (x, l, inverse) = (&mut x[..stride(R) * C], &l[..stride(C) * C], &inverse[..stride(C) * C]);
-    for c in 0..C {
-        let mut column = load::<Q, R>(&x[stride(R) * c..]);
-        for q in 0..c {
-            let factor = Q::load(&l[stride(C) * q + c]);
-            let before = &x[stride(R) * q..][..R];
-            for r in 0..R {
-                column[r] = column[r] - Q::load(&before[r]) * factor;
-            }
+    each_column!(C, solve_column, [Q, R, C], (x, l, inverse));
+}
+
+#[inline(always)]
+fn solve_column<Q: Quad, const R: usize, const N: usize, const C: usize>(
+    x: &mut [Four],
+    l: &[Four],
+    inverse: &[Four],
+) {
+    let mut column = load::<Q, R>(&x[stride(R) * C..]);
+    for q in 0..C {
+        let factor = Q::load(&l[stride(N) * q + C]);
+        for r in 0..R {
+            column[r] = column[r] - Q::load(&x[stride(R) * q + r]) * factor;
         }
-        let inv = Q::load(&inverse[stride(C) * c + c]);
-        for x in &mut column {
-            *x = *x * inv;
-        }
-        store(column, &mut x[stride(R) * c..]);
     }
+    let inv = Q::load(&inverse[stride(N) * C + C]);
+    for x in &mut column {
+        *x = *x * inv;
+    }
+    store(column, &mut x[stride(R) * C..]);
 }
 
 /// `y -= sign b x`; `b` is R x C.
@@ -265,17 +320,23 @@ pub(super) fn sub_mul<Q: Quad, const R: usize, const C: usize>(
     sign: f64,
 ) {
     let b = &b[..stride(R) * C];
-    let mut sums = [[Q::splat(0.0); R]; 2];
-    for c in 0..C {
-        let b = &b[stride(R) * c..][..R];
+    let (mut even, mut odd) = ([Q::splat(0.0); R], [Q::splat(0.0); R]);
+    for r in 0..R {
+        even[r] = Q::load(&b[r]) * x[0];
+        odd[r] = Q::load(&b[stride(R) + r]) * x[1];
+    }
+    for pair in 1..C.div_ceil(2) {
+        let c = 2 * pair;
         for r in 0..R {
-            let product = Q::load(&b[r]) * x[c];
-            sums[c % 2][r] = if c < 2 { product } else { sums[c % 2][r] + product };
+            even[r] = even[r] + Q::load(&b[stride(R) * c + r]) * x[c];
+            if c + 1 < C {
+                odd[r] = odd[r] + Q::load(&b[stride(R) * (c + 1) + r]) * x[c + 1];
+            }
         }
     }
     let (y, sign) = (&mut y[..R], Q::splat(sign));
     for r in 0..R {
-        (Q::load(&y[r]) - (sums[0][r] + sums[1][r]) * sign).store(&mut y[r]);
+        (Q::load(&y[r]) - (even[r] + odd[r]) * sign).store(&mut y[r]);
     }
 }
 
@@ -302,14 +363,17 @@ pub(super) fn sub_transposed<Q: Quad, const R: usize, const C: usize>(
 pub(super) fn forward<Q: Quad, const N: usize>(inverse: &[Four], x: [Q; N]) -> [Q; N] {
     let inverse = &inverse[..stride(N) * N];
     let mut out = x;
-    for r in 0..N {
-        let mut p = [Q::splat(0.0); 6];
-        for c in 0..=r {
-            p[c] = Q::load(&inverse[stride(N) * r + c]) * x[c];
-        }
-        out[r] = if N == 3 { (p[0] + p[1]) + p[2] } else { sum_of_six(p) };
-    }
+    each_column!(N, forward_row, [Q, N], (inverse, &x, &mut out));
     out
+}
+
+#[inline(always)]
+fn forward_row<Q: Quad, const N: usize, const R: usize>(inverse: &[Four], x: &[Q; N], out: &mut [Q; N]) {
+    let mut p = [Q::splat(0.0); 6];
+    for c in 0..R + 1 {
+        p[c] = Q::load(&inverse[stride(N) * R + c]) * x[c];
+    }
+    out[R] = if N == 3 { (p[0] + p[1]) + p[2] } else { sum_of_six(p) };
 }
 
 /// `x = L^-T x`, given the rows of the inverse.
@@ -317,13 +381,15 @@ pub(super) fn forward<Q: Quad, const N: usize>(inverse: &[Four], x: [Q; N]) -> [
 pub(super) fn back<Q: Quad, const N: usize>(inverse: &[Four], x: [Q; N]) -> [Q; N] {
     let inverse = &inverse[..stride(N) * N];
     let mut out = x;
-    for r in 0..N {
-        let mut sums = [Q::splat(0.0); 2];
-        for c in r..N {
-            let product = Q::load(&inverse[stride(N) * c + r]) * x[c];
-            sums[c % 2] = sums[c % 2] + product;
-        }
-        out[r] = sums[0] + sums[1];
-    }
+    each_column!(N, back_row, [Q, N], (inverse, &x, &mut out));
     out
+}
+
+#[inline(always)]
+fn back_row<Q: Quad, const N: usize, const R: usize>(inverse: &[Four], x: &[Q; N], out: &mut [Q; N]) {
+    let mut p = [Q::splat(0.0); 6];
+    for c in R..N {
+        p[c] = Q::load(&inverse[stride(N) * c + R]) * x[c];
+    }
+    out[R] = sum_of_six(p);
 }

@@ -14,6 +14,8 @@ use ferrode_math::simd::Quad;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factor {
     pub values: Vec<Four>,
+    /// Per block below the diagonal whether it is written for the first time by a coupling yet to come.
+    written: Vec<bool>,
     /// For each row where the block of the present column is, counted from the column's start.
     position: Vec<u32>,
 }
@@ -47,13 +49,25 @@ impl Masked {
 /// Puts the rows into the matrix.
 #[inline(always)]
 pub(super) fn assemble<Q: Quad>(all: &mut Abreast, blocks: &[RowBlock], shape: &Symbolic) {
-    let mut values = core::mem::take(&mut all.factor.values);
-    values.clear();
+    let Factor { mut values, mut written, position } = core::mem::take(&mut all.factor);
     values.resize(shape.numbers(), [0.0; 4]);
+    written.clear();
+    written.resize(shape.row.len(), false);
+    for coupling in &shape.couplings {
+        written[coupling.at as usize] = true;
+    }
     for c in 0..shape.columns() {
-        let (own, width) = (shape.start[c] as usize, usize::from(shape.size[c]));
-        for i in 0..width {
-            values[own + (stride(width) + 1) * i] = [shape.sign[c]; 4];
+        // What is not written as a whole; inverses are made later.
+        let width = usize::from(shape.size[c]);
+        if shape.sign[c] > 0.0 {
+            clear_diagonal(&mut values[shape.start[c] as usize..], width, shape.sign[c]);
+        }
+        for block in shape.column_start[c] as usize..shape.column_start[c + 1] as usize {
+            if !written[block] {
+                let (at, height) =
+                    (shape.at[block] as usize, usize::from(shape.size[shape.row[block] as usize]));
+                values[at..at + stride(height) * width].fill([0.0; 4]);
+            }
         }
     }
     let (mut masked, mut other) = (Masked::new(), Masked::new());
@@ -64,13 +78,28 @@ pub(super) fn assemble<Q: Quad>(all: &mut Abreast, blocks: &[RowBlock], shape: &
     for coupling in &shape.couplings {
         let [later, earlier] = coupling.blocks.map(|i| i as usize);
         let height = shape.size[shape.places[later].own as usize];
-        let out = &mut values[shape.at[coupling.at as usize] as usize..];
+        let width = usize::from(shape.size[shape.places[earlier].own as usize]);
+        let first = core::mem::replace(&mut written[coupling.at as usize], false);
+        let at = shape.at[coupling.at as usize] as usize;
+        let out = &mut values[at..at + stride(usize::from(height)) * width];
+        if first {
+            out.fill([0.0; 4]);
+        }
         let rows = masked.of::<Q>(all, &blocks[later], all.whole[later]);
         let cols = other.of::<Q>(all, &blocks[earlier], all.whole[earlier]);
         let [s, t] = coupling.sides.map(usize::from);
         by_sizes!(sub_product, Q, [height], (out, (rows, s), (cols, t)));
     }
-    all.factor.values = values;
+    all.factor = Factor { values, written, position };
+}
+
+/// The unit matrix with that sign.
+#[inline(always)]
+fn clear_diagonal(block: &mut [Four], width: usize, sign: f64) {
+    block[..stride(width) * width].fill([0.0; 4]);
+    for i in 0..width {
+        block[(stride(width) + 1) * i] = [sign; 4];
+    }
 }
 
 /// `-S` of a joint, `J` between it and its bodies; of light bodies, which are eliminated already, `-J J^T`.
@@ -85,6 +114,7 @@ fn add_joint<Q: Quad>(
     let own = place.own as usize;
     let width = usize::from(shape.size[own]);
     let diagonal = &mut values[shape.start[own] as usize..];
+    clear_diagonal(diagonal, width, shape.sign[own]);
     for (c, weight) in weight.iter().enumerate() {
         let (weight, least) = (Q::load(weight), Q::splat(-1.0));
         // A row without a weight keeps the -1 that stands there.

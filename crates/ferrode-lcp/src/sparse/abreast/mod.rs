@@ -8,10 +8,11 @@ mod blocks;
 mod factor;
 mod system;
 
+use super::ScaledRow;
 use super::symbolic::{NONE, Symbolic};
-use super::{RowBlock, ScaledRow};
 use blocks::Row;
 use factor::Factor;
+use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 pub(crate) use system::Task;
 
 /// A number of each of the four.
@@ -31,7 +32,8 @@ pub(crate) struct Abreast {
     inverse_sigma: Vec<Four>,
     pub diagonal: Vec<Four>,
     pub rhs: Vec<Four>,
-    pub bounds: Vec<[Four; 2]>,
+    pub lo: Vec<Four>,
+    pub hi: Vec<Four>,
     /// `1 / S`, or 0 for a row whose force is given.
     weight: Vec<Four>,
     pub lambda: Vec<Four>,
@@ -43,6 +45,10 @@ pub(crate) struct Abreast {
     z: Vec<Four>,
     /// Per block of rows: whether all of them have a weight, in all four.
     whole: Vec<bool>,
+    /// Per block of rows: whether any has a bound, in any of the four.
+    pub bounded: Vec<bool>,
+    /// Whether some row's CFM was raised.
+    raised: bool,
     factor: Factor,
 }
 
@@ -51,19 +57,17 @@ impl Abreast {
     pub fn load(&mut self, islands: &[Numbers<'_>; 4], shape: &Symbolic) {
         let m = islands[0].jacobian.len();
         self.jacobian.resize(m, [[0.0; 4]; 12]);
-        let [a, b, c, d] = islands.map(|island| island.jacobian);
-        for (out, (((a, b), c), d)) in self.jacobian.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
-            let [a, b, c, d] = [a, b, c, d].map(|row| row.as_flattened());
-            for (out, (((a, b), c), d)) in out.iter_mut().zip(a.iter().zip(b).zip(c).zip(d)) {
-                *out = [*a, *b, *c, *d];
-            }
+        for v in [&mut self.sigma, &mut self.rhs, &mut self.lo, &mut self.hi] {
+            v.resize(m, [0.0; 4]);
         }
-        interleave(islands.map(|island| island.sigma), &mut self.sigma);
-        interleave(islands.map(|island| island.rhs), &mut self.rhs);
-        self.bounds.resize(m, [[0.0; 4]; 2]);
-        for (row, [lo, hi]) in self.bounds.iter_mut().enumerate() {
-            (*lo, *hi) = (islands.map(|island| island.lo[row]), islands.map(|island| island.hi[row]));
-        }
+        interleave(
+            islands.map(|i| i.jacobian.as_flattened().as_flattened()),
+            self.jacobian.as_flattened_mut(),
+        );
+        interleave(islands.map(|i| i.sigma), &mut self.sigma);
+        interleave(islands.map(|i| i.rhs), &mut self.rhs);
+        interleave(islands.map(|i| i.lo), &mut self.lo);
+        interleave(islands.map(|i| i.hi), &mut self.hi);
         for v in [
             &mut self.used_sigma,
             &mut self.inverse_sigma,
@@ -82,15 +86,23 @@ impl Abreast {
         self.whole.resize(shape.places.len(), false);
     }
 
-    /// Sets which rows are free.
-    pub fn set_free(&mut self, free: impl Iterator<Item = [bool; 4]>, blocks: &[RowBlock]) {
-        for ((weight, inverse), free) in self.weight.iter_mut().zip(&self.inverse_sigma).zip(free) {
-            for l in 0..4 {
-                weight[l] = if free[l] { inverse[l] } else { 0.0 };
+    /// Forgets the last solution.
+    pub fn begin(&mut self) {
+        self.lambda.fill([0.0; 4]);
+        self.y.fill([[0.0; 4]; 6]);
+    }
+
+    /// Has rows, told with their blocks, take no part where their force is given.
+    pub fn hold(&mut self, given: impl Iterator<Item = ([u32; 2], [bool; 4])>) {
+        self.weight.copy_from_slice(&self.inverse_sigma);
+        self.whole.fill(true);
+        for ([row, block], given) in given {
+            for (weight, given) in self.weight[row as usize].iter_mut().zip(given) {
+                if given {
+                    *weight = 0.0;
+                    self.whole[block as usize] = false;
+                }
             }
-        }
-        for (whole, block) in self.whole.iter_mut().zip(blocks) {
-            *whole = self.weight[block.range()].as_flattened().iter().all(|weight| *weight != 0.0);
         }
     }
 }
@@ -113,7 +125,31 @@ impl<'a> Numbers<'a> {
     }
 }
 
-fn interleave([a, b, c, d]: [&[f64]; 4], out: &mut Vec<Four>) {
-    out.clear();
-    out.extend(a.iter().zip(b).zip(c).zip(d).map(|(((a, b), c), d)| [*a, *b, *c, *d]));
+/// Puts numbers of the four side by side.
+fn interleave(of: [&[f64]; 4], out: &mut [Four]) {
+    struct Interleave<'a>([&'a [f64]; 4], &'a mut [Four]);
+
+    impl QuadKernel for Interleave<'_> {
+        type Out = ();
+
+        #[inline(always)]
+        fn run<Q: Quad>(self) {
+            let Self([a, b, c, d], out) = self;
+            let (a, b) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+            let (c, d) = (c.as_chunks::<4>(), d.as_chunks::<4>());
+            let (out, last) = out.as_chunks_mut::<4>();
+            for ((((out, a), b), c), d) in out.iter_mut().zip(a.0).zip(b.0).zip(c.0).zip(d.0) {
+                let [w, x, y, z] = Q::transpose([Q::load(a), Q::load(b), Q::load(c), Q::load(d)]);
+                w.store(&mut out[0]);
+                x.store(&mut out[1]);
+                y.store(&mut out[2]);
+                z.store(&mut out[3]);
+            }
+            for ((((out, a), b), c), d) in last.iter_mut().zip(a.1).zip(b.1).zip(c.1).zip(d.1) {
+                *out = [*a, *b, *c, *d];
+            }
+        }
+    }
+
+    dispatch_quads(Interleave(of, out));
 }

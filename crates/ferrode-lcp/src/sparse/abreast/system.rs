@@ -1,9 +1,10 @@
 //! Solves of four islands with the rows of given sets held exactly: [`super::super::system`] with a quad for each number.
 
 use super::super::RowBlock;
+use super::super::kernels::stride;
 use super::super::symbolic::{NONE, Symbolic};
 use super::super::system::{LEAST_SIGMA, Pass};
-use super::blocks::{add, folded_sum, load, plus_row, store, sum, terms};
+use super::blocks::{Row, add, folded_sum, load, plus_row, store, sum, terms};
 use super::factor::{assemble, light_sides};
 use super::{Abreast, Four};
 use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
@@ -21,7 +22,7 @@ pub(crate) enum Task {
     Apply([bool; 4]),
     /// Nothing is changed; the answer is the largest force, and the square of what the force that does most does to its row.
     Strengths,
-    /// Sets `jy` to `J y`.
+    /// Sets `jy` to `J y` in the blocks that have a row with a bound.
     Product,
     /// Brings forces inside their bounds, and sets `y` to `J^T lambda` and `jy` to `J y`, from these alone. The answer is the natural residual and
     /// the largest force.
@@ -50,7 +51,13 @@ impl QuadKernel for Work<'_> {
             Task::Correct(pass) => return [all.correct::<Q>(blocks, shape, pass), [0.0; 4]],
             Task::Apply(to) => all.apply::<Q>(to),
             Task::Strengths => return all.strengths::<Q>(),
-            Task::Product => all.product::<Q>(blocks),
+            Task::Product => {
+                for (block, bounded) in blocks.iter().zip(&all.bounded) {
+                    if *bounded {
+                        product::<Q>(&all.jacobian, block, &all.y, &mut all.jy);
+                    }
+                }
+            }
             Task::Measure => return all.measure::<Q>(blocks),
         }
         [[0.0; 4]; 2]
@@ -69,6 +76,15 @@ fn of_bodies<Q: Quad>(y: &[[Four; 6]], bodies: [u32; 2]) -> [Q; 12] {
         }
     }
     out
+}
+
+/// `J y` of a block of rows.
+#[inline(always)]
+fn product<Q: Quad>(jacobian: &[Row], block: &RowBlock, y: &[[Four; 6]], out: &mut [Four]) {
+    let (range, y) = (block.range(), of_bodies::<Q>(y, block.bodies));
+    for (row, out) in jacobian[range.clone()].iter().zip(&mut out[range]) {
+        sum(terms(row, &y, [true; 2])).store(out);
+    }
 }
 
 /// Adds to what `y` holds for two bodies, where they are.
@@ -124,7 +140,7 @@ impl<Q: Quad> Largest<Q> {
 
 /// The nearest number within bounds.
 #[inline(always)]
-fn within<Q: Quad>(x: Q, [lo, hi]: &[Four; 2]) -> Q {
+fn within<Q: Quad>(x: Q, (lo, hi): (&Four, &Four)) -> Q {
     let (x, hi) = (x.max(Q::load(lo)), Q::load(hi));
     (x - hi).where_positive(hi, x)
 }
@@ -146,16 +162,7 @@ impl Abreast {
             used.store(&mut self.used_sigma[row]);
             used.where_positive(one / used, zero).store(&mut self.inverse_sigma[row]);
         }
-    }
-
-    #[inline(always)]
-    fn product<Q: Quad>(&mut self, blocks: &[RowBlock]) {
-        for block in blocks {
-            let y = of_bodies::<Q>(&self.y, block.bodies);
-            for row in block.range() {
-                sum(terms(&self.jacobian[row], &y, [true; 2])).store(&mut self.jy[row]);
-            }
-        }
+        self.raised = self.sigma != self.used_sigma;
     }
 
     #[inline(always)]
@@ -172,7 +179,7 @@ impl Abreast {
     #[inline(always)]
     fn measure<Q: Quad>(&mut self, blocks: &[RowBlock]) -> [Four; 2] {
         let mut largest = Largest::<Q>::new();
-        for (lambda, bounds) in self.lambda.iter_mut().zip(&self.bounds) {
+        for (lambda, bounds) in self.lambda.iter_mut().zip(self.lo.iter().zip(&self.hi)) {
             let x = within(Q::load(lambda), bounds);
             x.store(lambda);
             largest.take(x);
@@ -186,9 +193,11 @@ impl Abreast {
             }
             add_to_bodies(sum, &mut self.y, block.bodies);
         }
-        self.product::<Q>(blocks);
+        for block in blocks {
+            product::<Q>(&self.jacobian, block, &self.y, &mut self.jy);
+        }
         let mut residual = Largest::<Q>::new();
-        for (row, bounds) in self.bounds.iter().enumerate() {
+        for (row, bounds) in self.lo.iter().zip(&self.hi).enumerate() {
             let (x, sigma) = (Q::load(&self.lambda[row]), Q::load(&self.sigma[row]));
             let w = (Q::load(&self.jy[row]) + sigma * x) - Q::load(&self.rhs[row]);
             let moved = x - w / Q::load(&self.diagonal[row]);
@@ -310,9 +319,12 @@ impl Abreast {
     /// Whether the pivot of each raised row is so large that what its CFM was raised by hardly matters: `System::holds_firmly`.
     pub fn hold_firmly(&self, blocks: &[RowBlock], shape: &Symbolic, firm: f64) -> [bool; 4] {
         let mut holds = [true; 4];
+        if !self.raised {
+            return holds;
+        }
         for (block, place) in blocks.iter().zip(&shape.places) {
             let own = place.own as usize;
-            let step = super::super::kernels::stride(usize::from(shape.size[own])) + 1;
+            let step = stride(usize::from(shape.size[own])) + 1;
             let roots = self.factor.values[shape.start[own] as usize..].iter().step_by(step);
             for (row, root) in block.range().zip(roots) {
                 for l in 0..4 {
