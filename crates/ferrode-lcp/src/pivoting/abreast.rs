@@ -1,7 +1,7 @@
 //! Four problems of the same shape at once, as far as all goes well: see [`crate::sparse::abreast`].
 
 use super::line::state_of;
-use super::{NOISE, canonical::DEGENERATE};
+use super::{CLEARLY_WRONG, MANY, NOISE, canonical::DEGENERATE};
 use super::{
     PivotingOptions, PivotingReport, PivotingWorkspace, RowState, SparseLcp, WRONG, check, possible,
 };
@@ -85,21 +85,35 @@ impl Together<'_, '_> {
         self.guess();
         let mut rounds = [None; ABREAST];
         let mut refinements = [Refinement::default(); ABREAST];
+        let mut all_refined = false;
         for round in 1..=MOST_ROUNDS {
             self.hold_states();
             self.do_all(Task::Factorise);
             let largest;
             (largest, refinements) = self.solve();
-            self.refine(&mut refinements, ROUGH);
             self.do_all(Task::Product);
-            let mut wrong = false;
+            // As `Solve::pivot` goes on: refines unless many rows are wrong.
+            let (mut refined, mut wrong) = ([false; ABREAST], false);
             for l in 0..self.problems.len() {
                 if rounds[l].is_none() && largest[l].is_finite() {
-                    match self.judge(l, largest[l]) {
-                        Judgement::Right => rounds[l] = Some(round),
-                        Judgement::Wrong => wrong = true,
-                        Judgement::Degenerate => {}
+                    let count = self.judge(l, largest[l], CLEARLY_WRONG, false).wrong;
+                    refined[l] = count * MANY < self.work.state.len();
+                    if !refined[l] {
+                        self.judge(l, largest[l], CLEARLY_WRONG, true);
+                        wrong = true;
                     }
+                }
+            }
+            all_refined = refined != [false; ABREAST];
+            if all_refined {
+                self.refine(&mut refinements, ROUGH);
+                self.do_all(Task::Product);
+            }
+            for l in (0..ABREAST).filter(|l| refined[*l]) {
+                match self.judge(l, largest[l], WRONG, true) {
+                    Judgement { wrong: 0, degenerate: false } => rounds[l] = Some(round),
+                    Judgement { wrong: 0, .. } => {}
+                    _ => wrong = true,
                 }
             }
             if !wrong {
@@ -108,6 +122,9 @@ impl Together<'_, '_> {
         }
         if rounds == [None; ABREAST] {
             return [None; ABREAST];
+        }
+        if !all_refined {
+            self.refine(&mut refinements, ROUGH);
         }
         let firm = self.work.numbers.hold_firmly(self.problems[0].blocks, self.shape, FIRM);
         for (refinement, firm) in refinements.iter_mut().zip(firm) {
@@ -242,11 +259,12 @@ impl Together<'_, '_> {
         }
     }
 
-    /// Whether the states of a problem's rows are right; takes better ones where not.
-    fn judge(&mut self, l: usize, largest: f64) -> Judgement {
+    /// Whether the states of a problem's rows are right, which are wrong if off by more than that part of the largest force; takes better
+    /// ones where not, if told to.
+    fn judge(&mut self, l: usize, largest: f64, part: f64, correct: bool) -> Judgement {
         let AbreastWorkspace { numbers: s, state, bounded } = &mut *self.work;
-        let (tolerance, close) = (WRONG * (1.0 + largest), DEGENERATE * (1.0 + largest));
-        let (mut wrong, mut degenerate) = (false, false);
+        let (tolerance, close) = (part * (1.0 + largest), DEGENERATE * (1.0 + largest));
+        let mut found = Judgement { wrong: 0, degenerate: false };
         for row in bounded.iter().map(|[row, _]| *row as usize) {
             let (lo, hi) = (s.lo[row][l], s.hi[row][l]);
             let (lambda, rhs) = (s.lambda[row][l], s.rhs[row][l]);
@@ -257,7 +275,7 @@ impl Together<'_, '_> {
                 RowState::Free if lambda < lo - tolerance => RowState::Lower,
                 RowState::Free if lambda > hi + tolerance => RowState::Upper,
                 RowState::Free => {
-                    degenerate |= lambda - lo < close || hi - lambda < close;
+                    found.degenerate |= lambda - lo < close || hi - lambda < close;
                     continue;
                 }
                 _ if lo == hi => continue,
@@ -265,21 +283,20 @@ impl Together<'_, '_> {
                 RowState::Upper if slack > least => RowState::Free,
                 _ => continue,
             };
-            (*state, wrong) = (better, true);
+            found.wrong += 1;
+            if correct {
+                *state = better;
+            }
         }
-        match (wrong, degenerate) {
-            (true, _) => Judgement::Wrong,
-            (false, true) => Judgement::Degenerate,
-            (false, false) => Judgement::Right,
-        }
+        found
     }
 }
 
 /// What is thought of the states of a problem's rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Judgement {
-    Right,
-    Wrong,
-    /// Right, but some row could have either of two.
-    Degenerate,
+struct Judgement {
+    /// How many are wrong.
+    wrong: usize,
+    /// Whether one could have either of two.
+    degenerate: bool,
 }
