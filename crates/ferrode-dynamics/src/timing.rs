@@ -125,9 +125,9 @@ mod tests {
 
     #[test]
     fn phases_take_the_time_between_calls_of_the_clock() {
-        // `Quick` takes two islands in, and solves both at once.
-        let [each, both, one] = [[2.0, 2.0, 2.0], [2.0, 3.0, 2.0], [1.0, 1.0, 1.0]];
-        for (stepper, phases) in [(Stepper::Direct, each), (Stepper::Quick, both), (Stepper::Substep, one)] {
+        // `Quick` takes two islands in, and solves both at once; `Direct` does all with both, since they are alike.
+        let [both, one] = [[2.0, 3.0, 2.0], [1.0, 1.0, 1.0]];
+        for (stepper, phases) in [(Stepper::Direct, one), (Stepper::Quick, both), (Stepper::Substep, one)] {
             let mut world = two_islands();
             world.step(stepper, 0.01).unwrap();
             assert_eq!(world.step_times(), None);
