@@ -26,7 +26,7 @@ pub struct ClassRecord {
 }
 
 const CLASSES: usize = 18;
-const FIRST_USER: c_int = 14;
+pub(super) const FIRST_USER: c_int = 14;
 const USERS: usize = 4;
 
 /// What the program has registered.
@@ -105,7 +105,7 @@ impl GeomRecord {
 
     /// The geom that a wrapper moves.
     pub fn inner(&self) -> Option<&'static Self> {
-        (self.class.get() == class::TRANSFORM).then(|| self.own.inner.get().live()).flatten()
+        self.is_wrapper().then(|| self.own.inner.get().live()).flatten()
     }
 
     /// Whether contacts of a wrapper name the wrapper itself.
@@ -136,16 +136,22 @@ pub fn collider(a: c_int, b: c_int) -> Option<(Collider, bool)> {
     if let Some(found) = registry(|registry| *registry.overrides.get(i)?.get(j)?) {
         return Some(found);
     }
+    // A class of the program's gets to see the geom within.
+    if a == class::TRANSFORM || b == class::TRANSFORM {
+        return None;
+    }
     let choose = |of: c_int, other: c_int| {
         let chooser = class_of(of)?.collider?;
         // SAFETY: the program's own function, called as the header says.
         unsafe { chooser(other) }
     };
+    // Two geoms of one class come in the other order, as with an override.
+    let same = a == b;
     let found =
-        choose(a, b).map(|found| (found, false)).or_else(|| choose(b, a).map(|found| (found, true)))?;
+        choose(a, b).map(|found| (found, same)).or_else(|| choose(b, a).map(|found| (found, true)))?;
     registry(|registry| {
         registry.overrides[i][j] = Some(found);
-        registry.overrides[j][i] = Some((found.0, i != j && !found.1));
+        registry.overrides[j][i] = Some((found.0, same || !found.1));
     });
     Some(found)
 }

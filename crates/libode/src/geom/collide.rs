@@ -3,6 +3,7 @@
 use super::classes::{Collider, collider};
 use super::mesh_choice::MeshChoice;
 use super::space::{Pairs, pairs_between, pairs_within};
+use super::wrapper::Unwrapped;
 use super::{GeomId, GeomRecord};
 use crate::contact::ContactGeomRecord;
 use crate::fault::{Fault, Outcome, export, fence};
@@ -36,6 +37,20 @@ impl Target {
     }
 }
 
+/// Turns contacts round that the program has been given: they are between the geoms in the other order.
+fn turn_round(target: Target, which: core::ops::Range<usize>) {
+    for i in which {
+        // SAFETY: so many contacts have been written into the program's array.
+        unsafe {
+            let mut record = target.at(i).read_unaligned();
+            record.normal = record.normal.map(|x| -x);
+            core::mem::swap(&mut record.geom1, &mut record.geom2);
+            core::mem::swap(&mut record.side1, &mut record.side2);
+            target.at(i).write_unaligned(record);
+        }
+    }
+}
+
 fn write(target: Target, at: usize, contact: &GeomContact, a: GeomId, b: GeomId) {
     let record = ContactGeomRecord {
         position: padded(contact.point.position),
@@ -65,14 +80,43 @@ fn contacts_of(
     if core::ptr::eq(a, b) || same_body || left == 0 {
         return from;
     }
+    let flags = (flags & !0xffff) | left as c_uint;
     if let Some((collider, swapped)) = collider(a.class.get(), b.class.get()) {
-        return from + by_program(a, b, (flags & !0xffff) | left as c_uint, target, from, collider, swapped);
+        return from + by_program((a, b), flags, target, from, collider, swapped);
     }
     if a.is_plain() && b.is_plain() {
         return plain_contacts(a, b, CollideOptions { max_contacts: left as u16, ..options }, target, from);
     }
+    // A wrapper in the second place is put first, and its contacts are turned round.
+    if b.is_wrapper() {
+        let to = solid_contacts(b, a, flags, target, from);
+        turn_round(target, from..to);
+        return to;
+    }
+    solid_contacts(a, b, flags, target, from)
+}
+
+/// As many contacts of any two geoms, wrappers taken off, as `flags` ask for, from number `from` on; returns the next number.
+fn solid_contacts(
+    a: &'static GeomRecord,
+    b: &'static GeomRecord,
+    flags: c_uint,
+    target: Target,
+    from: usize,
+) -> usize {
+    let options = CollideOptions::from_ode_flags(flags);
+    let left = usize::from(options.max_contacts);
     let (Some((sa, fa)), Some((sb, fb))) = (a.solid(), b.solid()) else { return from };
     let (mut fa, mut fb) = (fa, fb);
+    let names = (a.named_wrapper(), b.named_wrapper());
+    if (a.is_wrapper() || b.is_wrapper())
+        && let Some((collider, swapped)) = collider(sa.class.get(), sb.class.get())
+    {
+        let _there = (Unwrapped::new(sa, a, &fa), Unwrapped::new(sb, b, &fb));
+        let count = by_program((sa, sb), flags, target, from, collider, swapped);
+        name_wrappers(target, from..from + count, names);
+        return from + count;
+    }
     let (view_a, view_b) = (sa.view_for(&fa, sb, &fb), sb.view_for(&fb, sa, &fa));
     let choice = MeshChoice::of(sa, &fa, sb, &fb);
     // Hits are asked about one by one: all are needed to choose from.
@@ -97,12 +141,7 @@ fn contacts_of(
     if let Some(choice) = choice {
         choice.finish(&mut found);
     }
-    let name = |geom: &'static GeomRecord, solid: &GeomRecord| {
-        let inner =
-            geom.inner().filter(|_| !geom.names_itself()).filter(|inner| core::ptr::eq(*inner, solid));
-        GeomId::of(inner.unwrap_or(geom))
-    };
-    let (ga, gb) = (name(a, sa), name(b, sb));
+    let (ga, gb) = (names.0.unwrap_or(GeomId::of(sa)), names.1.unwrap_or(GeomId::of(sb)));
     for (i, contact) in found.iter().take(left).enumerate() {
         write(target, from + i, contact, ga, gb);
     }
@@ -143,8 +182,7 @@ fn plain_contacts(
 
 /// Contacts by a collider of the program's. Given the geoms in the other order, its contacts are turned round.
 fn by_program(
-    a: &'static GeomRecord,
-    b: &'static GeomRecord,
+    (a, b): (&'static GeomRecord, &'static GeomRecord),
     flags: c_uint,
     target: Target,
     from: usize,
@@ -158,18 +196,26 @@ fn by_program(
         unsafe { collider(first, second, flags.cast_signed(), target.at(from), target.skip as c_int) };
     let count = usize::try_from(count).unwrap_or(0).min((flags & 0xffff) as usize);
     if swapped {
-        for i in from..from + count {
-            // SAFETY: the collider has written so many contacts into the program's array.
-            unsafe {
-                let mut record = target.at(i).read_unaligned();
-                record.normal = record.normal.map(|x| -x);
-                core::mem::swap(&mut record.geom1, &mut record.geom2);
-                core::mem::swap(&mut record.side1, &mut record.side2);
-                target.at(i).write_unaligned(record);
-            }
-        }
+        turn_round(target, from..from + count);
     }
     count
+}
+
+/// Contacts that the program's own collider has made name the wrappers that want it.
+fn name_wrappers(target: Target, which: core::ops::Range<usize>, names: (Option<GeomId>, Option<GeomId>)) {
+    if names.0.is_none() && names.1.is_none() {
+        return;
+    }
+    let name = |name: GeomId| core::ptr::with_exposed_provenance_mut(name.address());
+    for i in which {
+        // SAFETY: so many contacts have been written into the program's array.
+        unsafe {
+            let mut record = target.at(i).read_unaligned();
+            record.geom1 = names.0.map_or(record.geom1, name);
+            record.geom2 = names.1.map_or(record.geom2, name);
+            target.at(i).write_unaligned(record);
+        }
+    }
 }
 
 fn collide(

@@ -13,9 +13,10 @@ mod pose;
 mod shapes;
 mod space;
 mod trimesh;
+mod wrapper;
 
 use crate::fault::{Fault, Outcome, export, export_calling};
-use crate::real::{Real, Real4, Real12, mat3, r, vector};
+use crate::real::{Real, Real4, Real12, mat3, r, vec3, vector};
 use crate::record::{BodyId, BodyRecord, Required, record};
 use crate::slab::{Handle, Link, Pool, Record, Tag};
 use core::cell::{Cell, RefCell};
@@ -201,28 +202,19 @@ impl GeomRecord {
             let members = space::look(self, space::SpaceData::list).unwrap_or_default();
             return space::aabb_of(self.class.get(), &members);
         }
-        if let Some([ax, bx, ay, by, az, bz]) = self.user_aabb() {
-            let v = crate::real::vec3;
-            return Aabb::new(v(ax, ay, az), v(bx, by, bz));
+        if let Some(six) = self.user_aabb() {
+            return aabb_of_six(six);
         }
         match self.solid() {
+            Some((geom, frame)) if geom.class.get() >= classes::FIRST_USER => {
+                let _there = wrapper::Unwrapped::new(geom, self, &frame);
+                geom.user_aabb().map_or(Aabb::EMPTY, aabb_of_six)
+            }
             Some((geom, frame)) => geom.unbounded_field_aabb(&frame).unwrap_or_else(|| {
                 geom.shape.with(|shape| shape.as_ref().map_or(Aabb::EMPTY, |shape| shape.aabb_in(&frame)))
             }),
             None => Aabb::new(Vec3::ZERO, Vec3::ZERO),
         }
-    }
-
-    /// The geom whose shape counts, and where it is: another one for a wrapper, none for an empty wrapper.
-    fn solid(&self) -> Option<(&Self, Frame)> {
-        self.refresh();
-        if self.class.get() != class::TRANSFORM {
-            return Some((self, self.frame()));
-        }
-        let (outer, inner) = (self.frame(), self.inner()?);
-        inner.refresh();
-        let own = inner.frame();
-        Some((inner, Frame::new(outer.point_to_world(own.position), outer.rotation * own.rotation)))
     }
 
     /// Takes over what the program has changed in data that it shares with the geom.
@@ -423,6 +415,11 @@ fn set_enabled(geom: GeomId, enabled: bool) -> Outcome<()> {
     geom.disabled.set(!enabled);
     geom.tell_space();
     Ok(())
+}
+
+/// A box from ODE's order.
+fn aabb_of_six([ax, bx, ay, by, az, bz]: [Real; 6]) -> Aabb {
+    Aabb::new(vec3(ax, ay, az), vec3(bx, by, bz))
 }
 
 /// A box in ODE's order.
