@@ -9,18 +9,26 @@
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 if [ "${1:-}" = --install ]; then
-    apt-get install -y --no-install-recommends mu-cade xmoto mokomaze stormbaancoureur xvfb xauth libgl1-mesa-dri gcc libc6-dev libode-dev python3
+    apt-get install -y --no-install-recommends mu-cade xmoto mokomaze stormbaancoureur xvfb libgl1-mesa-dri gcc libc6-dev libode-dev python3
     shift
 fi
 library=$(readlink -f "${1:-$here/../target/release}/libode.so")
 [ -f "$library" ] || { echo "no $library: cargo build --release -p libode" >&2; exit 2; }
 libode=$(/sbin/ldconfig -p | awk '$1 == "libode.so.8" { print $NF; exit }')
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+xvfb=
+trap '[ -z "$xvfb" ] || kill "$xvfb"; rm -rf "$work"' EXIT
 mkdir "$work/libode" "$work/ferrode"
 ln -s "$libode" "$work/libode/libode.so.8"
 ln -s "$library" "$work/ferrode/libode.so.8"
 gcc -O1 -shared -fPIC -w -fno-builtin-exit -o "$work/lockstep.so" "$here/foreign/lockstep.c" -ldl
+Xvfb -displayfd 1 -noreset -screen 0 1024x768x24 > "$work/display" 2> "$work/xvfb.out" &
+xvfb=$!
+until [ -s "$work/display" ]; do
+    kill -0 "$xvfb" || { cat "$work/xvfb.out" >&2; exit 2; }
+    sleep 0.2
+done
+export DISPLAY=:$(cat "$work/display")
 
 failed=0
 # play NAME STEPS UNTIL TOLERANCE KEYS COMMAND…: so many steps on either library, which must agree until step UNTIL.
@@ -29,17 +37,13 @@ play() {
     shift 5
     echo "$name"
     for which in libode ferrode; do
-        mkdir -p "$work/home-$which"
-        # A second try: the search for a free display can meet another one.
-        for _ in 1 2; do
-            status=0
-            # Without random addresses, and with a home of its own that is alike for both.
-            env HOME="$work/home-$which" SDL_AUDIODRIVER=dummy LIBGL_ALWAYS_SOFTWARE=1 timeout -k 5 120 \
-                xvfb-run -a -s "-screen 0 1024x768x24" setarch -R env LD_LIBRARY_PATH="$work/$which" \
-                LOCKSTEP_LOG="$work/$name.$which" LOCKSTEP_STEPS="$steps" LOCKSTEP_KEYS="$keys" LD_PRELOAD="$work/lockstep.so" \
-                "$@" > "$work/$name.$which.out" 2>&1 || status=$?
-            [ ! -s "$work/$name.$which" ] || break
-        done
+        rm -rf "$work/home"
+        mkdir "$work/home"
+        status=0
+        # Without random addresses, and with a home of its own.
+        env HOME="$work/home" SDL_AUDIODRIVER=dummy LIBGL_ALWAYS_SOFTWARE=1 timeout -k 5 120 \
+            setarch -R env LD_LIBRARY_PATH="$work/$which" LOCKSTEP_LOG="$work/$name.$which" LOCKSTEP_STEPS="$steps" \
+            LOCKSTEP_KEYS="$keys" LD_PRELOAD="$work/lockstep.so" "$@" > "$work/$name.$which.out" 2>&1 || status=$?
         echo "$status" > "$work/$name.$which.status"
         if [ ! -s "$work/$name.$which" ]; then
             echo "  no step on $which; it said:"
