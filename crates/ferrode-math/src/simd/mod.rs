@@ -47,12 +47,14 @@
 // The one module of this crate that may.
 #![allow(unsafe_code)]
 
+mod boxes;
 mod level;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod octet;
 #[cfg(target_arch = "x86_64")]
 mod octet_x86;
+mod ordered;
 mod portable;
 mod quad;
 mod record;
@@ -60,8 +62,10 @@ mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+pub use boxes::overlapping;
 pub use level::{Level, dispatch, dispatch_at, dispatch_few};
 pub use octet::{Octet, OctetKernel, dispatch_octets};
+pub use ordered::Ordered;
 pub use quad::{Pair, Quad, QuadKernel, dispatch_quads};
 pub use record::{NO_RECORD, Record};
 pub use wide::{Compute, compute_wide};

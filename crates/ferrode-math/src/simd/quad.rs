@@ -3,7 +3,9 @@
 //! Where [`Compute`](super::Compute) leaves it to the compiler which numbers share a register, a [`QuadKernel`] says so. All
 //! operations are those of the lanes one by one, and the order of each sum is written out, so the bits are the same on every machine.
 
-use core::ops::{Add, Div, Mul, Sub};
+use super::{Mask, Ordered};
+use crate::Scalar;
+use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
 /// A computation that is written once for registers of any width.
 ///
@@ -20,9 +22,7 @@ pub trait QuadKernel {
 ///
 /// The types that implement it can't be named outside: a kernel gets one from [`dispatch_quads`], which knows that the machine has
 /// the instructions.
-pub trait Quad:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
-{
+pub trait Quad: Ordered {
     /// Two `f64` of the same kind.
     type Pair: Pair;
 
@@ -42,18 +42,8 @@ pub trait Quad:
     fn join(low: Self::Pair, high: Self::Pair) -> Self;
     /// `(x₀ + x₁) + (x₂ + x₃)` of each of four.
     fn sums(of: [Self; 4]) -> Self;
-    /// The first numbers of each of four, the second ones, and so on.
-    #[must_use]
-    fn transpose(of: [Self; 4]) -> [Self; 4];
-    /// The square roots.
-    #[must_use]
-    fn sqrt(self) -> Self;
-    /// `self` where that is larger than `b`, else `b`.
-    #[must_use]
-    fn max(self, b: Self) -> Self;
-    /// `a` where `self` is larger than zero, else `b`.
-    #[must_use]
-    fn where_positive(self, a: Self, b: Self) -> Self;
+    /// The columns of four rows: the first numbers of all four, the second ones, and so on.
+    fn columns(rows: [Self; 4]) -> [Self; 4];
 }
 
 /// Two `f64`.
@@ -84,7 +74,7 @@ pub fn dispatch_quads<K: QuadKernel>(kernel: K) -> K::Out {
 }
 
 /// Quads and pairs as arrays: the fallback, and what the other kind is tested against.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Array<const N: usize>([f64; N]);
 
 impl<const N: usize> Add for Array<N> {
@@ -111,11 +101,131 @@ impl<const N: usize> Mul for Array<N> {
     }
 }
 
+impl<const N: usize> AddAssign for Array<N> {
+    #[inline(always)]
+    fn add_assign(&mut self, b: Self) {
+        *self = *self + b;
+    }
+}
+
+impl<const N: usize> SubAssign for Array<N> {
+    #[inline(always)]
+    fn sub_assign(&mut self, b: Self) {
+        *self = *self - b;
+    }
+}
+
+impl<const N: usize> MulAssign for Array<N> {
+    #[inline(always)]
+    fn mul_assign(&mut self, b: Self) {
+        *self = *self * b;
+    }
+}
+
 impl<const N: usize> Div for Array<N> {
     type Output = Self;
     #[inline(always)]
     fn div(self, b: Self) -> Self {
         Self(core::array::from_fn(|l| self.0[l] / b.0[l]))
+    }
+}
+
+impl<const N: usize> Neg for Array<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.map(|x| -x))
+    }
+}
+
+impl<const N: usize> Default for Array<N> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::ZERO
+    }
+}
+
+impl<const N: usize> Scalar for Array<N> {
+    const ZERO: Self = Self([0.0; N]);
+    const ONE: Self = Self([1.0; N]);
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        Self([x; N])
+    }
+}
+
+/// A truth value per number of an array.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ArrayMask<const N: usize>([bool; N]);
+
+impl<const N: usize> BitAnd for ArrayMask<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, b: Self) -> Self {
+        Self(core::array::from_fn(|l| self.0[l] & b.0[l]))
+    }
+}
+
+impl<const N: usize> BitOr for ArrayMask<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, b: Self) -> Self {
+        Self(core::array::from_fn(|l| self.0[l] | b.0[l]))
+    }
+}
+
+impl<const N: usize> Not for ArrayMask<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(self.0.map(|x| !x))
+    }
+}
+
+impl<const N: usize> Mask for ArrayMask<N> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.0.iter().fold(false, |any, x| any | x)
+    }
+}
+
+impl<const N: usize> Ordered for Array<N> {
+    type Mask = ArrayMask<N>;
+
+    #[inline(always)]
+    fn lt(self, b: Self) -> ArrayMask<N> {
+        ArrayMask(core::array::from_fn(|l| self.0[l] < b.0[l]))
+    }
+
+    #[inline(always)]
+    fn le(self, b: Self) -> ArrayMask<N> {
+        ArrayMask(core::array::from_fn(|l| self.0[l] <= b.0[l]))
+    }
+
+    #[inline(always)]
+    fn select(mask: ArrayMask<N>, a: Self, b: Self) -> Self {
+        Self(core::array::from_fn(|l| if mask.0[l] { a.0[l] } else { b.0[l] }))
+    }
+
+    #[inline(always)]
+    fn bits(mask: ArrayMask<N>) -> u8 {
+        mask.0.iter().rev().fold(0, |bits, x| bits << 1 | u8::from(*x))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f64::abs))
+    }
+
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        Self(core::array::from_fn(|l| self.0[l].copysign(sign.0[l])))
     }
 }
 
@@ -163,23 +273,8 @@ impl Quad for Array<4> {
     }
 
     #[inline(always)]
-    fn transpose([a, b, c, d]: [Self; 4]) -> [Self; 4] {
-        core::array::from_fn(|l| Self([a.0[l], b.0[l], c.0[l], d.0[l]]))
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.map(f64::sqrt))
-    }
-
-    #[inline(always)]
-    fn max(self, b: Self) -> Self {
-        Self(core::array::from_fn(|l| if self.0[l] > b.0[l] { self.0[l] } else { b.0[l] }))
-    }
-
-    #[inline(always)]
-    fn where_positive(self, a: Self, b: Self) -> Self {
-        Self(core::array::from_fn(|l| if self.0[l] > 0.0 { a.0[l] } else { b.0[l] }))
+    fn columns(rows: [Self; 4]) -> [Self; 4] {
+        core::array::from_fn(|k| Self(rows.map(|row| row.0[k])))
     }
 }
 
@@ -234,20 +329,52 @@ mod tests {
             let (mut sums, mut joined) = ([0.0; 4], [0.0; 4]);
             Q::sums([q, q * q, q - Q::splat(0.1), Q::splat(0.3) * q]).store(&mut sums);
             Q::join(Q::Pair::sums([q.high(), q.low()]), p - q.low()).store(&mut joined);
-            let (mut roots, mut larger, mut chosen) = ([0.0; 4], [0.0; 4], [0.0; 4]);
-            ((q * q / Q::splat(0.3)).sqrt()).store(&mut roots);
-            q.max(Q::splat(f64::NAN)).max(Q::splat(1e-3)).store(&mut larger);
-            (q - Q::splat(0.1)).where_positive(q, Q::splat(f64::NAN)).store(&mut chosen);
-            let mut turned = [[0.0; 4]; 4];
-            for (of, to) in Q::transpose([q, q * q, q + q, q - q * q]).into_iter().zip(&mut turned) {
-                of.store(to);
-            }
             let sum = (q.fold() + p).sum();
-            let all = four.iter().chain(&two).chain(&sums).chain(&joined);
-            let all =
-                all.chain(turned.as_flattened()).chain(&roots).chain(&larger).chain(&chosen).chain([&sum]);
+            let all = four.iter().chain(&two).chain(&sums).chain(&joined).chain([&sum]);
             all.map(|x| x.to_bits()).collect()
         }
+    }
+
+    /// What [`Ordered`] adds, on numbers of which some are NaN, infinite or zero with a sign.
+    struct Compared([[f64; 4]; 4]);
+
+    impl QuadKernel for Compared {
+        type Out = (Vec<u64>, Vec<u8>);
+
+        #[inline(always)]
+        fn run<Q: Quad>(self) -> Self::Out {
+            let (mut numbers, mut masks) = (Vec::new(), Vec::new());
+            let rows = [0, 1, 2, 3].map(|k| Q::load(&self.0[k]));
+            let columns = Q::columns(rows);
+            for a in rows.into_iter().chain(columns) {
+                for b in rows {
+                    let (lt, le) = (a.lt(b), a.le(b));
+                    let all =
+                        [a.lesser(b), a.greater(b), a.copysign(b), Q::select(lt, a, b), a / b, -a, a.abs()];
+                    for q in all.into_iter().chain([Q::ONE, Q::ZERO, Q::from_f64(0.3), a.abs().sqrt()]) {
+                        let mut four = [0.0; 4];
+                        q.store(&mut four);
+                        // All NaN are alike.
+                        numbers.extend(four.map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() }));
+                    }
+                    masks.extend([Q::bits(lt), Q::bits(le), Q::bits(!lt & le), Q::bits(lt | !le)]);
+                    masks.extend([u8::from(lt.any()), u8::from(a == b)]);
+                }
+            }
+            (numbers, masks)
+        }
+    }
+
+    #[test]
+    fn comparisons_of_both_kinds_agree() {
+        let odd = [f64::NAN, 0.0, -0.0, f64::INFINITY];
+        let all = || {
+            Compared([[0.1, -2.7, 1e17, -0.0], odd, [1.0, -0.0, 0.0, f64::NAN], [0.1, 2.0, -1e300, 5e-324]])
+        };
+        let plain = all().run::<Array<4>>();
+        assert_eq!(dispatch_quads(all()), plain);
+        // 0.1 < 1, −2.7 < −0, not 1e17 < 0, nothing < NaN.
+        assert_eq!(plain.1[12..14], [0b0011, 0b0011]);
     }
 
     #[test]

@@ -3,6 +3,8 @@
 //! The types of AVX2 and AVX-512 are made in `run_avx2`, `run_quads` and `run_avx512` only, which the dispatcher calls after it has found
 //! the instructions on the machine. That is what makes the intrinsics below sound.
 
+mod ordered;
+
 use super::portable::{Block4, Block8, Block16};
 use super::sealed::Sealed;
 use super::{Compute, Kernel, Lanes, Mask, Pair, Quad, QuadKernel, Record, Work};
@@ -588,6 +590,20 @@ unsafe fn scatter16(records: &[Cell<Record>], index: &[u32; 16], numbers: [F32x1
     }
 }
 
+/// See [`super::overlapping`].
+#[inline(always)]
+pub(super) fn overlapping(sides: &[[[f32; 4]; 2]; 3], min: &[f32; 3], max: &[f32; 3]) -> u8 {
+    // SAFETY: every x86-64 machine has SSE2; each array holds four numbers, of any alignment.
+    unsafe {
+        let below = |k: usize| {
+            let low = _mm_cmple_ps(_mm_loadu_ps(sides[k][0].as_ptr()), _mm_set1_ps(max[k]));
+            let high = _mm_cmple_ps(_mm_set1_ps(min[k]), _mm_loadu_ps(sides[k][1].as_ptr()));
+            _mm_and_ps(low, high)
+        };
+        _mm_movemask_ps(_mm_and_ps(_mm_and_ps(below(0), below(1)), below(2))) as u8
+    }
+}
+
 /// Runs a kernel with AVX2's quads.
 ///
 /// # Safety
@@ -608,7 +624,7 @@ pub(super) struct F64x4(__m256d);
 pub(super) struct F64x2(__m128d);
 
 macro_rules! f64_operators {
-    ($($type:ident $add:ident $sub:ident $mul:ident $div:ident;)+) => {$(
+    ($($type:ident $add:ident $sub:ident $mul:ident;)+) => {$(
         impl Add for $type {
             type Output = Self;
             #[inline(always)]
@@ -635,21 +651,12 @@ macro_rules! f64_operators {
                 Self(unsafe { $mul(self.0, b.0) })
             }
         }
-
-        impl Div for $type {
-            type Output = Self;
-            #[inline(always)]
-            fn div(self, b: Self) -> Self {
-                // SAFETY: as in `add`.
-                Self(unsafe { $div(self.0, b.0) })
-            }
-        }
     )+};
 }
 
 f64_operators! {
-    F64x4 _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd;
-    F64x2 _mm_add_pd _mm_sub_pd _mm_mul_pd _mm_div_pd;
+    F64x4 _mm256_add_pd _mm256_sub_pd _mm256_mul_pd;
+    F64x2 _mm_add_pd _mm_sub_pd _mm_mul_pd;
 }
 
 // Each function below that takes no value of the type is called by a kernel that `run_quads` runs, and by nobody else: the types are
@@ -712,39 +719,18 @@ impl Quad for F64x4 {
     }
 
     #[inline(always)]
-    fn transpose([a, b, c, d]: [Self; 4]) -> [Self; 4] {
+    fn columns([a, b, c, d]: [Self; 4]) -> [Self; 4] {
         // SAFETY: the machine has AVX2.
         unsafe {
             // [a₀, b₀, a₂, b₂] and [a₁, b₁, a₃, b₃], and so for the others.
-            let (ab, ab_odd) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpackhi_pd(a.0, b.0));
-            let (cd, cd_odd) = (_mm256_unpacklo_pd(c.0, d.0), _mm256_unpackhi_pd(c.0, d.0));
+            let (ab, ab1) = (_mm256_unpacklo_pd(a.0, b.0), _mm256_unpackhi_pd(a.0, b.0));
+            let (cd, cd1) = (_mm256_unpacklo_pd(c.0, d.0), _mm256_unpackhi_pd(c.0, d.0));
             [
                 Self(_mm256_permute2f128_pd::<0x20>(ab, cd)),
-                Self(_mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd)),
+                Self(_mm256_permute2f128_pd::<0x20>(ab1, cd1)),
                 Self(_mm256_permute2f128_pd::<0x31>(ab, cd)),
-                Self(_mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd)),
+                Self(_mm256_permute2f128_pd::<0x31>(ab1, cd1)),
             ]
-        }
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: the machine has AVX2.
-        Self(unsafe { _mm256_sqrt_pd(self.0) })
-    }
-
-    #[inline(always)]
-    fn max(self, b: Self) -> Self {
-        // SAFETY: the machine has AVX2. The instruction gives the second one unless the first is larger.
-        Self(unsafe { _mm256_max_pd(self.0, b.0) })
-    }
-
-    #[inline(always)]
-    fn where_positive(self, a: Self, b: Self) -> Self {
-        // SAFETY: the machine has AVX2.
-        unsafe {
-            let positive = _mm256_cmp_pd::<_CMP_GT_OQ>(self.0, _mm256_setzero_pd());
-            Self(_mm256_blendv_pd(b.0, a.0, positive))
         }
     }
 }

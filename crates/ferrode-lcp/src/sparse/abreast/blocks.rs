@@ -24,6 +24,12 @@ macro_rules! each_column {
 /// The twelve numbers of a row, six for each of its bodies.
 pub(super) type Row = [Four; 12];
 
+/// `a` where `x` is larger than zero, else `b`.
+#[inline(always)]
+pub(super) fn where_positive<Q: Quad>(x: Q, a: Q, b: Q) -> Q {
+    Q::select(Q::ZERO.lt(x), a, b)
+}
+
 /// `R` numbers of a vector.
 #[inline(always)]
 pub(super) fn load<Q: Quad, const R: usize>(from: &[Four]) -> [Q; R] {
@@ -245,7 +251,7 @@ fn eliminate<Q: Quad, const N: usize, const C: usize>(
     for r in C..N {
         column[r].store(&mut h[s * C + r]);
     }
-    pivots[C] = column[C].where_positive(column[C], one);
+    pivots[C] = where_positive(column[C], column[C], one);
     over[C] = one / pivots[C];
 }
 

@@ -38,7 +38,7 @@ impl Masked {
         for ((out, row), weight) in self.0.iter_mut().zip(rows).zip(&all.weight[range]) {
             let weight = Q::load(weight);
             for i in 0..12 {
-                weight.where_positive(Q::load(&row[i]), Q::splat(0.0)).store(&mut out[i]);
+                where_positive(weight, Q::load(&row[i]), Q::splat(0.0)).store(&mut out[i]);
             }
         }
         let count = rows.len().min(6);
@@ -118,7 +118,7 @@ fn add_joint<Q: Quad>(
     for (c, weight) in weight.iter().enumerate() {
         let (weight, least) = (Q::load(weight), Q::splat(-1.0));
         // A row without a weight keeps the -1 that stands there.
-        weight.where_positive(least / weight, least).store(&mut diagonal[(stride(width) + 1) * c]);
+        where_positive(weight, least / weight, least).store(&mut diagonal[(stride(width) + 1) * c]);
     }
     let light = light_sides(block, place);
     if light != [false; 2] {

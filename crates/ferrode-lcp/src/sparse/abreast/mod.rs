@@ -139,7 +139,7 @@ fn interleave(of: [&[f64]; 4], out: &mut [Four]) {
             let (c, d) = (c.as_chunks::<4>(), d.as_chunks::<4>());
             let (out, last) = out.as_chunks_mut::<4>();
             for ((((out, a), b), c), d) in out.iter_mut().zip(a.0).zip(b.0).zip(c.0).zip(d.0) {
-                let [w, x, y, z] = Q::transpose([Q::load(a), Q::load(b), Q::load(c), Q::load(d)]);
+                let [w, x, y, z] = Q::columns([Q::load(a), Q::load(b), Q::load(c), Q::load(d)]);
                 w.store(&mut out[0]);
                 x.store(&mut out[1]);
                 y.store(&mut out[2]);

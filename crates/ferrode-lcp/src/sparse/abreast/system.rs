@@ -4,7 +4,7 @@ use super::super::RowBlock;
 use super::super::kernels::stride;
 use super::super::symbolic::{NONE, Symbolic};
 use super::super::system::{LEAST_SIGMA, Pass};
-use super::blocks::{Row, add, folded_sum, load, plus_row, store, sum, terms};
+use super::blocks::{Row, add, folded_sum, load, plus_row, store, sum, terms, where_positive};
 use super::factor::{assemble, light_sides};
 use super::{Abreast, Four};
 use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
@@ -114,14 +114,14 @@ impl<Q: Quad> Largest<Q> {
 
     #[inline(always)]
     fn take(&mut self, x: Q) {
-        let size = x.max(Q::splat(0.0) - x);
-        self.most = size.max(self.most);
+        let size = x.abs();
+        self.most = size.greater(self.most);
         self.total = self.total + size;
     }
 
     #[inline(always)]
     fn with(self, b: Self) -> Self {
-        Self { most: self.most.max(b.most), total: self.total + b.total }
+        Self { most: self.most.greater(b.most), total: self.total + b.total }
     }
 
     #[inline(always)]
@@ -141,8 +141,8 @@ impl<Q: Quad> Largest<Q> {
 /// The nearest number within bounds.
 #[inline(always)]
 fn within<Q: Quad>(x: Q, (lo, hi): (&Four, &Four)) -> Q {
-    let (x, hi) = (x.max(Q::load(lo)), Q::load(hi));
-    (x - hi).where_positive(hi, x)
+    let (x, hi) = (x.greater(Q::load(lo)), Q::load(hi));
+    where_positive(x - hi, hi, x)
 }
 
 impl Abreast {
@@ -157,10 +157,10 @@ impl Abreast {
             let sigma = Q::load(&self.sigma[row]);
             let square = folded_sum(terms(jacobian, &load::<Q, 12>(jacobian), [true; 2]));
             let diagonal = square + sigma;
-            let used = sigma.max(least * diagonal);
+            let used = sigma.greater(least * diagonal);
             diagonal.store(&mut self.diagonal[row]);
             used.store(&mut self.used_sigma[row]);
-            used.where_positive(one / used, zero).store(&mut self.inverse_sigma[row]);
+            where_positive(used, one / used, zero).store(&mut self.inverse_sigma[row]);
         }
         self.raised = self.sigma != self.used_sigma;
     }
@@ -211,11 +211,11 @@ impl Abreast {
         let to = Q::load(&[f64::from(to[0]), f64::from(to[1]), f64::from(to[2]), f64::from(to[3])]);
         for (y, dy) in self.y.as_flattened_mut().iter_mut().zip(self.dy.as_flattened()) {
             let before = Q::load(y);
-            to.where_positive(before + Q::load(dy), before).store(y);
+            where_positive(to, before + Q::load(dy), before).store(y);
         }
         for (lambda, change) in self.lambda.iter_mut().zip(&self.dlambda) {
             let before = Q::load(lambda);
-            to.where_positive(before + Q::load(change), before).store(lambda);
+            where_positive(to, before + Q::load(change), before).store(lambda);
         }
     }
 
@@ -243,7 +243,7 @@ impl Abreast {
                     let jy = sum(terms(&self.jacobian[row], &y, [true; 2]));
                     error = (error - jy) - Q::load(&sigma[row]) * Q::load(&self.lambda[row]);
                 }
-                Q::load(&self.weight[row]).where_positive(error, zero).store(&mut self.dlambda[row]);
+                where_positive(Q::load(&self.weight[row]), error, zero).store(&mut self.dlambda[row]);
             }
             let mut forces = [zero; 12];
             for row in range {
@@ -284,7 +284,7 @@ impl Abreast {
                 for (z, row) in z.iter_mut().zip(block.range()) {
                     let product = sum(terms(&self.jacobian[row], &dy, light));
                     let right = Q::load(&self.dlambda[row]) - product;
-                    Q::load(&self.weight[row]).where_positive(right, zero).store(z);
+                    where_positive(Q::load(&self.weight[row]), right, zero).store(z);
                 }
             }
             z[count..].fill([0.0; 4]);
@@ -301,7 +301,7 @@ impl Abreast {
             let mut forces = [zero; 12];
             for (row, z) in block.range().zip(z) {
                 let negative = zero - Q::load(z);
-                let force = Q::load(&self.weight[row]).where_positive(negative, zero);
+                let force = where_positive(Q::load(&self.weight[row]), negative, zero);
                 force.store(&mut self.dlambda[row]);
                 plus_row(&mut forces, force, &self.jacobian[row]);
             }
