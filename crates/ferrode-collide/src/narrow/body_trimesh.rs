@@ -3,7 +3,7 @@ use super::facet_axes::lift_out;
 use super::manifold::add_manifold;
 use super::ray_trimesh::ray_triangle;
 use super::reduce::reduce;
-use super::sieve::Sieve;
+use super::sieve::{Numbers, Sieve};
 use super::support::{Body, Core};
 use super::triangle::{Facet, near_facet};
 use crate::space::Probe;
@@ -68,11 +68,9 @@ fn on_surface(body: &Body<'_>, mesh: &TriMesh, around: &Aabb, fm: &Frame, out: &
         // That a triangle does not face the middle is seen below; that of the box is another.
         let (frame, half) = box_around(body);
         let sieve = Sieve::new(mesh, frame, half, true);
-        mesh.tree().query(around, |i| {
-            if let Some(near) = sieve.sift(i)
-                && let Some(facet) = mesh.facet(i)
-            {
-                near_facet(body, middle, &facet, near.meets_box, &mut all);
+        sieve.each(&Numbers::near(mesh, around), |i, meets_box| {
+            if let Some(facet) = mesh.facet(i) {
+                near_facet(body, middle, &facet, meets_box, &mut all);
             }
         });
         drop_long_ways(body, mesh, &mut all);

@@ -1,8 +1,10 @@
 use super::closest_line_points;
 use super::cutout::Cutout;
-use super::facet_axes::{FacetContacts, Near, Place, Rule, each_facet, greater, lesser};
+use super::facet_axes::{FacetContacts, Least, Near, Place, Rule, each_facet, greater};
+use super::sieve::splat;
 use crate::{Contacts, Cuboid, Frame, Shape, TriMesh};
-use ferrode_math::Vec3;
+use ferrode_math::simd::{Mask, Quad};
+use ferrode_math::{Vec3, Vector3};
 
 /// By how much an edge's axis must be better than a face's.
 const EDGE: f64 = 1.5;
@@ -22,14 +24,6 @@ struct CuboidRule {
     half: Vec3,
 }
 
-/// The axis of least overlap: overlap, unit normal into the box, and 0 for the triangle's normal, 1 to 3 for the box's axes,
-/// 4 + 3 i + e for axis i with edge e.
-struct Least {
-    overlap: f64,
-    normal: Vec3,
-    code: usize,
-}
-
 const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
 
 impl Rule for CuboidRule {
@@ -41,84 +35,93 @@ impl Rule for CuboidRule {
     }
 
     #[inline(always)]
-    fn lowest(&self, n: Vec3) -> Vec3 {
-        Vec3::new(-self.half.x.copysign(n.x), -self.half.y.copysign(n.y), -self.half.z.copysign(n.z))
+    fn lowest<Q: Quad>(&self, n: Vector3<Q>) -> Vector3<Q> {
+        let h = splat::<Q>(self.half);
+        Vector3::new(-h.x.copysign(n.x), -h.y.copysign(n.y), -h.z.copysign(n.z))
     }
 
-    fn touch(&self, near: &Near, _: u8, found: &mut FacetContacts) -> bool {
-        let Some(least) = self.least_overlap(near) else { return false };
-        found.normal = least.normal;
-        found.place = Place::Deepest;
-        match least.code {
-            0 => self.face_below_triangle(near, found),
-            1..=3 => self.triangle_below_face(near, least.code - 1, found),
-            _ => self.edges(near, &least, found),
+    /// The code is 0 for the triangle's normal, 1 to 3 for the box's axes, 4 + 3 i + e for axis i with edge e. The normal
+    /// follows from the code and the scale.
+    #[inline(always)]
+    fn axes<Q: Quad>(&self, near: &Near<Q>, _: [u8; 4], wanted: Q::Mask) -> Least<Q> {
+        let [a, b, c] = near.corners;
+        let v = [a.to_array(), b.to_array(), c.to_array()];
+        let h = splat::<Q>(self.half).to_array();
+        let mut best =
+            Least { apart: !wanted, overlap: near.depth, normal: near.normal, code: Q::ZERO, scale: Q::ONE };
+        for i in 0..3 {
+            let low = v[0][i].lesser(v[1][i]).lesser(v[2][i]);
+            let high = v[0][i].greater(v[1][i]).greater(v[2][i]);
+            let (ahead, behind) = (high + h[i], h[i] - low);
+            best.apart = best.apart | ahead.lt(Q::ZERO) | behind.lt(Q::ZERO);
+            let overlap = ahead.lesser(behind);
+            let better = overlap.lt(best.overlap);
+            best.overlap = Q::select(better, overlap, best.overlap);
+            best.code = Q::select(better, Q::from_f64((1 + i) as f64), best.code);
+            best.scale = Q::select(better, Q::select(ahead.le(behind), Q::ONE, -Q::ONE), best.scale);
         }
-        true
+        if !(!best.apart).any() {
+            return best;
+        }
+        // Axis i × edge e has two components, and two of the triangle's corners are as far along it. What is compared is
+        // squares: of axes that are better the length is needed, of others not.
+        let (least, edge) = (Q::splat(f64::EPSILON), Q::splat(EDGE));
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            for e in 0..3 {
+                let (a, b, third) = (&v[e], &v[(e + 1) % 3], &v[(e + 2) % 3]);
+                let (x, y) = (-(b[k] - a[k]), b[j] - a[j]);
+                let (p, q) = (x * a[j] + y * a[k], x * third[j] + y * third[k]);
+                let reach = x.abs() * h[j] + y.abs() * h[k];
+                let (ahead, behind) = (p.greater(q) + reach, reach - p.lesser(q));
+                // A short axis says nothing.
+                let square = x * x + y * y;
+                let says = least.lt(square);
+                let overlap = ahead.lesser(behind);
+                best.apart = best.apart | (overlap.lt(Q::ZERO) & says);
+                let dear = overlap * edge;
+                let better = (dear * dear).lt(best.overlap * best.overlap * square) & says;
+                if better.any() {
+                    let inverse = Q::ONE / square.sqrt();
+                    best.overlap = Q::select(better, overlap * inverse, best.overlap);
+                    best.code = Q::select(better, Q::from_f64((4 + 3 * i + e) as f64), best.code);
+                    let scale = Q::select(ahead.le(behind), inverse, -inverse);
+                    best.scale = Q::select(better, scale, best.scale);
+                }
+            }
+        }
+        best
+    }
+
+    fn contacts(&self, near: &Near<f64>, least: &Least<f64>, found: &mut FacetContacts) {
+        found.place = Place::Deepest;
+        let code = least.code as usize;
+        match code {
+            0 => {
+                found.normal = near.normal;
+                self.face_below_triangle(near, found);
+            }
+            1..=3 => {
+                let axis = AXES[code - 1];
+                found.normal = if least.scale > 0.0 { axis } else { -axis };
+                self.triangle_below_face(near, code - 1, found);
+            }
+            _ => {
+                let (i, e) = ((code - 4) / 3 % 3, (code - 4) % 3);
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let edge = near.corners[(e + 1) % 3] - near.corners[e];
+                found.normal = Vec3::ZERO;
+                found.normal[j] = -edge[k] * least.scale;
+                found.normal[k] = edge[j] * least.scale;
+                self.edges(near, (i, e), least.overlap, found);
+            }
+        }
     }
 }
 
 impl CuboidRule {
-    #[inline(always)]
-    fn least_overlap(&self, near: &Near) -> Option<Least> {
-        let (v, h) = (&near.corners, self.half);
-        let mut best = Least { overlap: near.depth, normal: near.normal, code: 0 };
-        for i in 0..3 {
-            let low = lesser(lesser(v[0][i], v[1][i]), v[2][i]);
-            let high = greater(greater(v[0][i], v[1][i]), v[2][i]);
-            let (ahead, behind) = (high + h[i], h[i] - low);
-            if ahead < 0.0 || behind < 0.0 {
-                return None;
-            }
-            let overlap = lesser(ahead, behind);
-            if overlap < best.overlap {
-                let normal = if ahead <= behind { AXES[i] } else { -AXES[i] };
-                best = Least { overlap, normal, code: 1 + i };
-            }
-        }
-        // Axis i × edge e has two components, and two of the triangle's corners are as far along it. What is compared is
-        // squares: of axes that are better the length is needed, of others not.
-        let edges = [v[1] - v[0], v[2] - v[1], v[0] - v[2]];
-        let mut found = [[(0.0, 0.0, 0.0); 3]; 3];
-        let mut apart = false;
-        for (i, row) in found.iter_mut().enumerate() {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            for (e, axis) in row.iter_mut().enumerate() {
-                let (x, y) = (-edges[e][k], edges[e][j]);
-                let (p, q) = (x * v[e][j] + y * v[e][k], {
-                    let third = v[(e + 2) % 3];
-                    x * third[j] + y * third[k]
-                });
-                let reach = x.abs() * h[j] + y.abs() * h[k];
-                let (ahead, behind) = (greater(p, q) + reach, reach - lesser(p, q));
-                // A short axis says nothing.
-                let square = x * x + y * y;
-                apart |= (lesser(ahead, behind) < 0.0) & (square > f64::EPSILON);
-                *axis = (ahead, behind, square);
-            }
-        }
-        if apart {
-            return None;
-        }
-        for (i, row) in found.iter().enumerate() {
-            for (e, &(ahead, behind, square)) in row.iter().enumerate() {
-                let overlap = lesser(ahead, behind) * EDGE;
-                if overlap * overlap < best.overlap * best.overlap * square && square > f64::EPSILON {
-                    let inverse = 1.0 / square.sqrt();
-                    let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                    let sign = if ahead <= behind { inverse } else { -inverse };
-                    let mut normal = Vec3::ZERO;
-                    normal[j] = -edges[e][k] * sign;
-                    normal[k] = edges[e][j] * sign;
-                    best = Least { overlap: lesser(ahead, behind) * inverse, normal, code: 4 + 3 * i + e };
-                }
-            }
-        }
-        Some(best)
-    }
-
     /// What of the box's face that looks at the triangle is over the triangle and below it.
-    fn face_below_triangle(&self, near: &Near, found: &mut FacetContacts) {
+    fn face_below_triangle(&self, near: &Near<f64>, found: &mut FacetContacts) {
         let (v, n, h) = (&near.corners, near.normal, self.half);
         let i = (1..3).fold(0, |b, i| if n[i].abs() > n[b].abs() { i } else { b });
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -139,7 +142,7 @@ impl CuboidRule {
     }
 
     /// What of the triangle is over a face of the box, the one that looks along −normal, and below it.
-    fn triangle_below_face(&self, near: &Near, i: usize, found: &mut FacetContacts) {
+    fn triangle_below_face(&self, near: &Near<f64>, i: usize, found: &mut FacetContacts) {
         let (n, h) = (found.normal, self.half);
         let mut triangle = Cutout::new(&near.corners);
         for j in [(i + 1) % 3, (i + 2) % 3] {
@@ -151,9 +154,8 @@ impl CuboidRule {
     }
 
     /// The point midway between the edges that touch.
-    fn edges(&self, near: &Near, least: &Least, found: &mut FacetContacts) {
-        let (v, n, h) = (&near.corners, least.normal, self.half);
-        let (i, e) = ((least.code - 4) / 3, (least.code - 4) % 3);
+    fn edges(&self, near: &Near<f64>, (i, e): (usize, usize), overlap: f64, found: &mut FacetContacts) {
+        let (v, n, h) = (&near.corners, found.normal, self.half);
         let mut p = Vec3::ZERO;
         for k in (0..3).filter(|&k| k != i) {
             p[k] = -h[k].copysign(n[k]);
@@ -167,6 +169,6 @@ impl CuboidRule {
         let slack = 1e-6 * greater(length, h[i]);
         let met = x.abs() <= h[i] + slack && (-slack..=length + slack).contains(&y);
         found.place = if met { Place::Furthest } else { Place::Nowhere };
-        found.push(middle, least.overlap);
+        found.push(middle, overlap);
     }
 }

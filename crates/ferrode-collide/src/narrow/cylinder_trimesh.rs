@@ -1,10 +1,11 @@
 use super::cutout::Cutout;
 use super::facet_axes::{
-    FacetContacts, LeastOverlap, Near, Place, Rule, clip_segment, each_facet, greater, lesser,
+    FacetContacts, Least, LeastOverlap, Near, Place, Rule, clip_segment, each_facet, greater, lesser, level,
 };
 use super::unit::unit;
 use crate::{Contacts, Cylinder, Frame, Shape, TriMesh};
-use ferrode_math::Vec3;
+use ferrode_math::simd::Quad;
+use ferrode_math::{Vec3, Vector3};
 
 /// Shortest axis that says anything, and least cosine of an edge and the cylinder's axis at which it meets the rims.
 const SHORTEST: f64 = 1e-5;
@@ -44,60 +45,66 @@ impl Rule for CylinderRule {
     }
 
     #[inline(always)]
-    fn lowest(&self, n: Vec3) -> Vec3 {
+    fn lowest<Q: Quad>(&self, n: Vector3<Q>) -> Vector3<Q> {
         let around = (n.x * n.x + n.y * n.y).sqrt();
-        let scale = if around > 0.0 { -self.radius / around } else { 0.0 };
-        Vec3::new(n.x * scale, n.y * scale, -self.length.copysign(n.z))
+        let scale = Q::select(Q::ZERO.lt(around), Q::splat(-self.radius) / around, Q::ZERO);
+        Vector3::new(n.x * scale, n.y * scale, -Q::splat(self.length).copysign(n.z))
     }
 
-    fn touch(&self, near: &Near, _: u8, found: &mut FacetContacts) -> bool {
-        self.contacts(near, found).is_some()
-    }
-}
-
-impl CylinderRule {
-    fn contacts(&self, near: &Near, found: &mut FacetContacts) -> Option<()> {
+    #[inline(always)]
+    fn axes<Q: Quad>(&self, near: &Near<Q>, _: [u8; 4], wanted: Q::Mask) -> Least<Q> {
         let v = &near.corners;
-        let reach = |axis: Vec3, _: f64| {
-            axis.z.abs() * self.length + self.radius * (axis.x * axis.x + axis.y * axis.y).sqrt()
-        };
-        // Along axes across the cylinder's.
-        let around = |_: Vec3, length: f64| self.radius * length;
-        let mut best = LeastOverlap::new(near, SHORTEST);
+        let (radius, half) = (Q::splat(self.radius), Q::splat(self.length));
+        let mut best = LeastOverlap::new(near, SHORTEST, wanted);
         let edges = [v[1] - v[0], v[2] - v[1], v[0] - v[2]];
-        for edge in edges {
-            best.test(Vec3::new(-edge.y, edge.x, 0.0), around, 1.0, 1)?;
+        // Axes across the cylinder's.
+        for edge in &edges {
+            let axis = Vector3::new(-edge.y, edge.x, Q::ZERO);
+            let length = axis.length_squared().sqrt();
+            best.test(axis, axis.length_squared(), length, radius * length, wanted);
         }
         for corner in v {
-            best.test(Vec3::new(-corner.x, -corner.y, 0.0), around, 1.0, 1)?;
+            let axis = Vector3::new(-corner.x, -corner.y, Q::ZERO);
+            let length = axis.length_squared().sqrt();
+            best.test(axis, axis.length_squared(), length, radius * length, wanted);
         }
-        best.test(Vec3::Z, |_, _| self.length, 1.0, 1)?;
+        best.test(Vector3::Z, Q::ONE, Q::ONE, half, wanted);
+        if best.all_apart() {
+            return best.found();
+        }
         // Where the line of an edge crosses the plane of a rim, the rim's tangent and the edge span a plane that may separate.
-        let inverse = edges.map(|edge| {
-            let level = edge.z * edge.z < SHORTEST * SHORTEST * edge.length_squared();
-            (!level).then(|| 1.0 / edge.z)
-        });
-        for rim in [self.length, -self.length] {
-            for (e, edge) in edges.iter().enumerate() {
-                let Some(inverse) = inverse[e] else { continue };
-                let share = (rim - v[e].z) * inverse;
+        let least = Q::splat(SHORTEST * SHORTEST);
+        let inverse = [Q::ONE / edges[0].z, Q::ONE / edges[1].z, Q::ONE / edges[2].z];
+        for end in 0..2 {
+            let rim = if end == 0 { half } else { -half };
+            for e in 0..3 {
+                let edge = edges[e];
+                let crosses = wanted & !(edge.z * edge.z).lt(least * edge.length_squared());
+                let share = (rim - v[e].z) * inverse[e];
                 let (x, y) = (v[e].x + edge.x * share, v[e].y + edge.y * share);
                 // (x, y, 0) × z × edge.
-                let axis = Vec3::new(-x * edge.z, -y * edge.z, x * edge.x + y * edge.y);
-                best.test(axis, reach, 1.0, 1)?;
+                let axis = Vector3::new(-x * edge.z, -y * edge.z, x * edge.x + y * edge.y);
+                let square = axis.length_squared();
+                let reach = axis.z.abs() * half + radius * (axis.x * axis.x + axis.y * axis.y).sqrt();
+                best.test(axis, square, square.sqrt(), reach, crosses);
             }
         }
-        let n = best.normal;
+        best.found()
+    }
+
+    fn contacts(&self, near: &Near<f64>, least: &Least<f64>, found: &mut FacetContacts) {
+        let (v, n) = (&near.corners, least.normal);
         found.normal = n;
         if n.z.abs() < CAP {
             found.place = Place::Furthest;
-            let side = unit(Vec3::new(n.x, n.y, 0.0))? * self.radius;
+            let Some(side) = unit(Vec3::new(n.x, n.y, 0.0)) else { return };
+            let side = side * self.radius;
             let ends = [Vec3::new(-side.x, -side.y, self.length), Vec3::new(-side.x, -side.y, -self.length)];
-            let level = best.level();
+            let level = level(v, n);
             for p in clip_segment(ends, v, near.normal).into_iter().flatten() {
                 found.push(p, greater(level - n.dot(p), 0.0));
             }
-            return Some(());
+            return;
         }
         found.place = Place::Deepest;
         let inward = if n.z > 0.0 { Vec3::Z } else { -Vec3::Z };
@@ -115,13 +122,12 @@ impl CylinderRule {
                 triangle.clip(Vec3::new(-x, -y, 0.0), self.radius);
             }
         }
-        let reach = reach(n, 1.0);
+        let reach = n.z.abs() * self.length + self.radius * (n.x * n.x + n.y * n.y).sqrt();
         for &p in triangle.corners() {
             let depth = reach + p.dot(n);
             if depth >= 0.0 {
                 found.push(p, depth);
             }
         }
-        Some(())
     }
 }

@@ -9,7 +9,7 @@ use super::wide::{Part, WideTree};
 use ferrode_math::Aabb;
 
 /// Most items in a leaf. Four triangles are tested as fast as the three more boxes that would tell them apart.
-const LEAF: usize = 4;
+pub(crate) const LEAF: usize = 4;
 /// Planes that are tried as a split.
 const BINS: usize = 16;
 
@@ -25,6 +25,7 @@ pub struct AabbTree {
     nodes: WideTree,
     /// The same leaves, for rays and what moves; of small trees empty.
     packed: PackedTree,
+    /// By leaves, and behind them what is no item: a leaf can be read as if it were full.
     items: Vec<u32>,
 }
 
@@ -71,7 +72,8 @@ impl AabbTree {
             tree.packed = PackedTree::build(part(0), open);
         }
         // Not in the memory of the larger ones, where it would be collected.
-        tree.items = items.iter().map(|i| i.0).collect();
+        tree.items = Vec::with_capacity(items.len() + LEAF - 1);
+        tree.items.extend(items.iter().map(|i| i.0).chain([0; LEAF - 1]));
         tree.nodes.shrink_to_fit();
         tree
     }
@@ -79,6 +81,11 @@ impl AabbTree {
     /// Bytes that the tree takes.
     pub fn size(&self) -> usize {
         self.nodes.size() + self.packed.size() + self.items.capacity() * size_of::<u32>()
+    }
+
+    /// How many items there are.
+    fn len(&self) -> usize {
+        self.items.len().saturating_sub(LEAF - 1)
     }
 
     fn items(&self, first: u32, count: u32) -> &[u32] {
@@ -93,6 +100,16 @@ impl AabbTree {
         });
     }
 
+    /// As [`query`](Self::query), leaf by leaf: of four numbers the first few count, and how many these are.
+    #[inline]
+    pub(crate) fn query_leaves(&self, aabb: &Aabb, mut found: impl FnMut(&[u32; LEAF], usize)) {
+        self.nodes.query(&Box32::around(aabb), |first, count| {
+            if let Some(items) = self.items.get(first as usize..).and_then(<[u32]>::first_chunk) {
+                found(items, count as usize);
+            }
+        });
+    }
+
     /// Calls `found` with the number of each box that the probe meets within the limit, and a few beside these, nearer
     /// ones first as far as their boxes tell. `found` may lower the limit.
     #[inline]
@@ -100,7 +117,7 @@ impl AabbTree {
         let mut found = |first, count, limit: &mut f64| {
             self.items(first, count).iter().for_each(|&item| found(item, limit));
         };
-        let packed = (PACKED..PackedTree::MOST).contains(&self.items.len());
+        let packed = (PACKED..PackedTree::MOST).contains(&self.len());
         match probe.bundle(self.packed.bounds()).filter(|_| packed) {
             Some(bundle) => self.packed.seek(&bundle, limit, found),
             None => self.nodes.seek(probe, limit, &mut found),

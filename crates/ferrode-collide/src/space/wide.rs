@@ -2,6 +2,7 @@
 
 use super::f32_box::{Box32, Pending};
 use super::probe::{Probe, RayLanes};
+use ferrode_math::simd::overlapping;
 
 /// Four boxes side by side, and what each holds: two cache lines, which processors fetch together.
 #[derive(Clone, Copy, Debug)]
@@ -57,15 +58,10 @@ impl Four {
         (1..4).fold(self.bounds(0), |all, l| all.union(&self.bounds(l)))
     }
 
+    /// Which of the four overlap a box, a bit for each.
     #[inline(always)]
-    fn overlaps(&self, b: &Box32) -> [bool; 4] {
-        let mut hit = [true; 4];
-        for i in 0..3 {
-            for (l, hit) in hit.iter_mut().enumerate() {
-                *hit &= (self.sides[i][0][l] <= b.max[i]) & (self.sides[i][1][l] >= b.min[i]);
-            }
-        }
-        hit
+    fn overlaps(&self, b: &Box32) -> u8 {
+        overlapping(&self.sides, &b.min, &b.max)
     }
 }
 
@@ -156,7 +152,7 @@ impl WideTree {
         loop {
             let hit = node.overlaps(&around);
             for l in (0..4).rev() {
-                pending.push_if(hit[l], node.holds(l));
+                pending.push_if(hit >> l & 1 != 0, node.holds(l));
             }
             loop {
                 let Some((link, count)) = pending.pop() else { return };
