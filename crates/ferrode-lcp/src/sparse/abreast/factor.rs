@@ -5,7 +5,7 @@ use super::super::symbolic::{Head, NONE, Place, Symbolic};
 use super::super::{NO_SPARSE_BODY, RowBlock};
 use super::blocks::{
     Row, back, cholesky, forward, load, solve_right, store, sub_aat, sub_abt, sub_mul, sub_product,
-    sub_square, sub_transposed,
+    sub_square, sub_transposed, where_positive,
 };
 use super::{Abreast, Four};
 use ferrode_math::simd::Quad;
