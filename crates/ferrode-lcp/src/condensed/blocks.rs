@@ -7,7 +7,7 @@ use ferrode_math::simd::{Pair, Quad};
 pub(super) fn dot_blocks<Q: Quad>(a: &[[f64; 4]], b: &[[f64; 4]]) -> f64 {
     let mut sum = Q::splat(0.0);
     for (a, b) in a.iter().zip(b) {
-        sum = sum + Q::load(a) * Q::load(b);
+        sum += Q::load(a) * Q::load(b);
     }
     sum.fold().sum()
 }
@@ -30,7 +30,7 @@ pub(super) fn add_and_dot<Q: Quad>(y: &mut [f64], s: f64, a: &[f64], x: &[f64]) 
     for ((y, a), x) in y_blocks.iter_mut().zip(a_blocks).zip(x_blocks) {
         let a = Q::load(a);
         (Q::load(y) + scale * a).store(y);
-        sum = sum + a * Q::load(x);
+        sum += a * Q::load(x);
     }
     let mut rest = 0.0;
     for ((y, a), x) in y_rest.iter_mut().zip(a_rest).zip(x_rest) {

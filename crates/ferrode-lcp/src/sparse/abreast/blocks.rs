@@ -113,7 +113,7 @@ pub(super) fn folded_sum<Q: Quad>(t: [Q; 4]) -> Q {
 #[inline(always)]
 pub(super) fn plus_row<Q: Quad>(sum: &mut [Q; 12], s: Q, row: &Row) {
     for i in 0..12 {
-        sum[i] = sum[i] + Q::load(&row[i]) * s;
+        sum[i] += Q::load(&row[i]) * s;
     }
 }
 
@@ -154,7 +154,7 @@ pub(super) fn sub_product<Q: Quad, const H: usize>(
         for (r, row) in a.iter().take(H).enumerate() {
             let mut p = load::<Q, 6>(&row[6 * s..]);
             for i in 0..6 {
-                p[i] = p[i] * with[i];
+                p[i] *= with[i];
             }
             let product = if r < 4 { ((p[0] + p[1]) + (p[2] + p[3])) + (p[4] + p[5]) } else { sum_of_six(p) };
             (Q::load(&out[r]) - product).store(&mut out[r]);
@@ -180,7 +180,7 @@ fn aat_column<Q: Quad, const R: usize, const D: usize, const C: usize>(t: &mut [
     for d in 1..D {
         let with = Q::load(&a[stride(R) * d + C]);
         for r in C..R {
-            sum[r] = sum[r] + Q::load(&a[stride(R) * d + r]) * with;
+            sum[r] += Q::load(&a[stride(R) * d + r]) * with;
         }
     }
     for r in C..R {
@@ -203,13 +203,13 @@ pub(super) fn sub_abt<Q: Quad, const R: usize, const C: usize, const D: usize>(
         let with = Q::load(&b[c]);
         let mut sum = load::<Q, R>(a);
         for sum in &mut sum {
-            *sum = *sum * with;
+            *sum *= with;
         }
         for d in 1..D {
             let with = Q::load(&b[stride(C) * d + c]);
             let a = &a[stride(R) * d..][..R];
             for r in 0..R {
-                sum[r] = sum[r] + Q::load(&a[r]) * with;
+                sum[r] += Q::load(&a[r]) * with;
             }
         }
         let t = &mut t[stride(R) * c..][..R];
@@ -245,7 +245,7 @@ fn eliminate<Q: Quad, const N: usize, const C: usize>(
     for q in 0..C {
         let factor = Q::load(&h[s * q + C]) * over[q];
         for r in C..N {
-            column[r] = column[r] - Q::load(&h[s * q + r]) * factor;
+            column[r] -= Q::load(&h[s * q + r]) * factor;
         }
     }
     for r in C..N {
@@ -276,7 +276,7 @@ fn finish<Q: Quad, const N: usize, const C: usize>(
         let factor = Q::load(&h[s * q + C]);
         for k in 0..C {
             if k <= q {
-                row[k] = row[k] - Q::load(&inverse[s * q + k]) * factor;
+                row[k] -= Q::load(&inverse[s * q + k]) * factor;
             }
         }
     }
@@ -307,12 +307,12 @@ fn solve_column<Q: Quad, const R: usize, const N: usize, const C: usize>(
     for q in 0..C {
         let factor = Q::load(&l[stride(N) * q + C]);
         for r in 0..R {
-            column[r] = column[r] - Q::load(&x[stride(R) * q + r]) * factor;
+            column[r] -= Q::load(&x[stride(R) * q + r]) * factor;
         }
     }
     let inv = Q::load(&inverse[stride(N) * C + C]);
     for x in &mut column {
-        *x = *x * inv;
+        *x *= inv;
     }
     store(column, &mut x[stride(R) * C..]);
 }
@@ -334,9 +334,9 @@ pub(super) fn sub_mul<Q: Quad, const R: usize, const C: usize>(
     for pair in 1..C.div_ceil(2) {
         let c = 2 * pair;
         for r in 0..R {
-            even[r] = even[r] + Q::load(&b[stride(R) * c + r]) * x[c];
+            even[r] += Q::load(&b[stride(R) * c + r]) * x[c];
             if c + 1 < C {
-                odd[r] = odd[r] + Q::load(&b[stride(R) * (c + 1) + r]) * x[c + 1];
+                odd[r] += Q::load(&b[stride(R) * (c + 1) + r]) * x[c + 1];
             }
         }
     }
@@ -360,7 +360,7 @@ pub(super) fn sub_transposed<Q: Quad, const R: usize, const C: usize>(
             p[c] = Q::load(&b[stride(C) * r + c]) * x[c];
         }
         let product = if C == 3 && r < 4 { (p[0] + p[1]) + p[2] } else { sum_of_six(p) };
-        y[r] = y[r] - product;
+        y[r] -= product;
     }
 }
 

@@ -62,12 +62,11 @@ pub(super) fn assemble<Q: Quad>(all: &mut Abreast, blocks: &[RowBlock], shape: &
         if shape.sign[c] > 0.0 {
             clear_diagonal(&mut values[shape.start[c] as usize..], width, shape.sign[c]);
         }
-        for block in shape.column_start[c] as usize..shape.column_start[c + 1] as usize {
-            if !written[block] {
-                let (at, height) =
-                    (shape.at[block] as usize, usize::from(shape.size[shape.row[block] as usize]));
-                values[at..at + stride(height) * width].fill([0.0; 4]);
-            }
+        let below = shape.column_start[c] as usize..shape.column_start[c + 1] as usize;
+        let rows = shape.at[below.clone()].iter().zip(&shape.row[below.clone()]);
+        for ((at, row), _) in rows.zip(&written[below]).filter(|(_, written)| !**written) {
+            let (at, height) = (*at as usize, usize::from(shape.size[*row as usize]));
+            values[at..at + stride(height) * width].fill([0.0; 4]);
         }
     }
     let (mut masked, mut other) = (Masked::new(), Masked::new());
@@ -240,7 +239,7 @@ fn go_back<Q: Quad, const N: usize>(head: &Head, shape: &Symbolic, values: &[Fou
     let mut solved = back::<Q, N>(inverse, sum);
     let sign = Q::splat(head.sign);
     for x in &mut solved {
-        *x = *x * sign;
+        *x *= sign;
     }
     store(solved, &mut x[head.offset as usize..]);
 }

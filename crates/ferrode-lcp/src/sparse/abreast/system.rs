@@ -116,7 +116,7 @@ impl<Q: Quad> Largest<Q> {
     fn take(&mut self, x: Q) {
         let size = x.abs();
         self.most = size.greater(self.most);
-        self.total = self.total + size;
+        self.total += size;
     }
 
     #[inline(always)]
