@@ -379,6 +379,69 @@ fn hash(world: &World) -> u64 {
     })
 }
 
+/// An arm of five hinges with a motor, a brake and stops, which hangs from the world and falls against them.
+fn arm(world: &mut World, base: Vec3, mass: f64) -> Vec<BodyKey> {
+    let mut links: Vec<BodyKey> = Vec::new();
+    for i in 0..5 {
+        let at = base + Vec3::X * (i as f64 * 0.3);
+        let body = link(world, at + Vec3::X * 0.15, Vec3::new(0.26, 0.06, 0.04), mass + 0.1 * i as f64);
+        let axis = if i % 2 == 0 { Vec3::Y } else { Vec3::new(0.0, 0.6, 0.8) };
+        let hinge = world.add_hinge(Some(body), links.last().copied(), at, axis).unwrap();
+        let mut hinge = world.joint_mut::<Hinge>(hinge).unwrap();
+        match i {
+            1 => hinge.set_motor(2.0, 0.5).unwrap(),
+            3 => hinge.set_motor(0.0, 0.3).unwrap(),
+            _ => hinge.set_limits(-0.4, 0.3).unwrap(),
+        };
+        links.push(body);
+    }
+    links
+}
+
+#[test]
+fn alone_and_in_company_articulations_move_alike() {
+    let fall = |company: bool| {
+        let mut world = world(Stepper::Substep);
+        change(&mut world, |settings| settings.sleep_speed = 0.0);
+        let links = arm(&mut world, Vec3::ZERO, 0.5);
+        if company {
+            // Built alike, and on a table.
+            let table = Cuboid::new(Vec3::new(3.0, 1.0, 0.2)).unwrap();
+            world.add_static(table, Pose::from_position(Vec3::new(0.7, 5.0, -0.12))).unwrap();
+            arm(&mut world, Vec3::Y * 5.0, 0.5);
+        }
+        let (position, angle) = run(&mut world, H, 60);
+        assert!(position < 1e-5 && angle < 1e-4, "{position} {angle}");
+        links.iter().map(|key| world.body(*key).unwrap().position()).collect::<Vec<_>>()
+    };
+    let (alone, company) = (fall(false), fall(true));
+    assert!(alone.iter().any(|p| p.z < -0.2), "{alone:?}");
+    for (a, b) in alone.iter().zip(&company) {
+        assert!((*a - *b).length() < 1e-3, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn lanes_of_every_width_give_the_same_bits_alone_too() {
+    // Arms of one shape that reach their stops one after the other, at no contact with anything.
+    let mut start = world(Stepper::Substep);
+    for i in 0..19 {
+        arm(&mut start, Vec3::Y * i as f64, 0.5 + 0.2 * i as f64);
+    }
+    let run_at = |level: Option<Level>| {
+        let mut world = start.clone();
+        change(&mut world, |settings| settings.lanes = level);
+        for _ in 0..90 {
+            world.step(H).unwrap();
+        }
+        hash(&world)
+    };
+    let expected = run_at(None);
+    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+        assert_eq!(run_at(Some(level)), expected, "{level:?}");
+    }
+}
+
 #[test]
 fn lanes_of_every_width_give_the_same_bits() {
     let mut start = world(Stepper::Substep);

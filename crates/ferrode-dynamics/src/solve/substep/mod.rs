@@ -366,6 +366,10 @@ impl World {
         joints.find_carried(&context, bodies, &self.bodies, &mut self.joints, memory);
         articulations.find(level, joints, bodies);
         joints.begin(bodies, &self.bodies);
+        let touching =
+            contacts.keys.iter().filter(|key| key.sort != contact::NOT_SOLVED).map(|key| key.bodies);
+        let loose = joints.constraints.iter().filter(|c| !c.exact).map(|c| c.bodies);
+        articulations.find_company(bodies.len(), touching.chain(loose));
         self.timing.spent_on(Phase::Assembly);
         let dt = part as f32;
         for i in 0..settings.substeps {

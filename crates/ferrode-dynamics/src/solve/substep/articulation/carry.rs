@@ -229,14 +229,11 @@ impl<L: Lanes> Start<L> {
         let apart = sub(&add(&two.displacement, &moved[1]), &add(&one.displacement, &moved[0]));
         let error = without_trifles(&add(&self.gap, &apart), unit);
         let Some((points, rest)) = rows.split_first_chunk_mut::<3>() else { return };
-        let [a, b, c] = arms[0];
-        points[0].angular[0] = scaled(scales[0], &[L::ZERO, c, -b]);
-        points[1].angular[0] = scaled(scales[0], &[-c, L::ZERO, a]);
-        points[2].angular[0] = scaled(scales[0], &[b, -a, L::ZERO]);
-        let [a, b, c] = arms[1];
-        points[0].angular[1] = scaled(scales[1], &[L::ZERO, -c, b]);
-        points[1].angular[1] = scaled(scales[1], &[c, L::ZERO, -a]);
-        points[2].angular[1] = scaled(scales[1], &[-b, a, L::ZERO]);
+        let [x, y, z] = arms[1];
+        let (first, second) = (levers(scales[0], &arms[0]), levers(scales[1], &[-x, -y, -z]));
+        for ((point, first), second) in points.iter_mut().zip(first).zip(second) {
+            point.angular = [first, second];
+        }
         for k in 0..3 {
             points[k].error = error[k];
             points[k].wanted[0] = (correct * error[k]).max(-most).min(most);
@@ -261,6 +258,17 @@ impl<L: Lanes> Start<L> {
         let back = (self.stop * beyond * correct).max(-most).min(most);
         drive.wanted = [self.velocity - near - back, self.velocity - near];
     }
+}
+
+/// The angular parts of rows along x, y and z at an arm: Sᵀ (r × e) of each.
+#[inline(always)]
+fn levers<L: Lanes>(s: &[L; 8], r: &[L; 3]) -> [[L; 3]; 3] {
+    let [a, b, c] = *r;
+    [
+        [s[2] * c - s[4] * b, s[3] * c - s[5] * b, -(s[6] * b)],
+        [s[4] * a - s[1] * c, s[5] * a, s[6] * a],
+        [s[1] * b - s[2] * a, -(s[3] * a), L::ZERO],
+    ]
 }
 
 /// The angular parts of a row about a world axis.

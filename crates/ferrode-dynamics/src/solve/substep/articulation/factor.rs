@@ -65,38 +65,47 @@ impl<L: Lanes> Factor<L> {
         }
     }
 
-    /// x = K⁻¹ x.
+    /// x = K⁻¹ x, of the first N in each place.
     #[inline(always)]
-    pub fn solve(&self, plan: &Plan, x: &mut [[L; 3]]) {
+    pub fn solve<const N: usize>(&self, plan: &Plan, x: &mut [[[L; 3]; 2]]) {
         let (n, unit) = (plan.nodes(), L::splat(TRIFLE));
         for c in 0..n {
             let l = &self.blocks[c];
-            let [a, b, d] = x[c];
-            let b = b - l[3] * a;
-            let y = without_trifles(&[a, b, d - (l[6] * a + l[7] * b)], unit);
+            let mut y = x[c];
+            for y in y.iter_mut().take(N) {
+                let [a, b, d] = *y;
+                let b = b - l[3] * a;
+                *y = without_trifles(&[a, b, d - (l[6] * a + l[7] * b)], unit);
+            }
             x[c] = y;
             let range = plan.start[c] as usize..plan.start[c + 1] as usize;
             for (m, row) in self.blocks[n + range.start..n + range.end].iter().zip(&plan.rows[range]) {
-                let t = &mut x[*row as usize];
-                for i in 0..3 {
-                    t[i] -= m[3 * i] * y[0] + m[3 * i + 1] * y[1] + m[3 * i + 2] * y[2];
+                for (t, y) in x[*row as usize].iter_mut().zip(&y).take(N) {
+                    for i in 0..3 {
+                        t[i] -= m[3 * i] * y[0] + m[3 * i + 1] * y[1] + m[3 * i + 2] * y[2];
+                    }
                 }
             }
         }
         for c in (0..n).rev() {
             let l = &self.blocks[c];
-            let [a, b, d] = x[c];
-            let mut y = [a * l[0], b * l[4], d * l[8]];
+            let mut y = x[c];
+            for y in y.iter_mut().take(N) {
+                *y = [y[0] * l[0], y[1] * l[4], y[2] * l[8]];
+            }
             let range = plan.start[c] as usize..plan.start[c + 1] as usize;
             for (m, row) in self.blocks[n + range.start..n + range.end].iter().zip(&plan.rows[range]) {
-                let t = &x[*row as usize];
-                for i in 0..3 {
-                    y[i] -= m[i] * t[0] + m[3 + i] * t[1] + m[6 + i] * t[2];
+                for (y, t) in y.iter_mut().zip(&x[*row as usize]).take(N) {
+                    for i in 0..3 {
+                        y[i] -= m[i] * t[0] + m[3 + i] * t[1] + m[6 + i] * t[2];
+                    }
                 }
             }
-            let [a, b, d] = without_trifles(&y, unit);
-            let b = b - l[7] * d;
-            x[c] = [a - (l[3] * b + l[6] * d), b, d];
+            for (x, y) in x[c].iter_mut().zip(&y).take(N) {
+                let [a, b, d] = without_trifles(y, unit);
+                let b = b - l[7] * d;
+                *x = [a - (l[3] * b + l[6] * d), b, d];
+            }
         }
     }
 }
@@ -195,9 +204,14 @@ mod tests {
                 }
             }
             let wanted: Vec<[L; 3]> = (0..n).map(|_| [number(), number(), number()]).collect();
-            let mut x = wanted.clone();
+            let mut x: Vec<[[L; 3]; 2]> =
+                wanted.iter().map(|x| [*x, x.map(|x| x * L::splat(-2.0))]).collect();
             factor.factorise(plan);
-            factor.solve(plan, &mut x);
+            factor.solve::<2>(plan, &mut x);
+            let x: Vec<[L; 3]> = x
+                .iter()
+                .map(|x| [0, 1, 2].map(|k| L::splat(0.5) * (x[0][k] - L::splat(0.5) * x[1][k])))
+                .collect();
             let mut worst = 0.0f32;
             for (i, row) in dense.iter().enumerate() {
                 let mut rest = wanted[i / 3][i % 3];

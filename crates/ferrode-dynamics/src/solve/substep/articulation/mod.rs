@@ -2,16 +2,19 @@
 //!
 //! Sweeps that go from joint to joint bring a force past one joint at a time; long chains and heavy ends open under them. Here the joints of
 //! a connected set are one block: J̃ J̃ᵀ over all of them is factorised in each substep (`shape`, `factor`), and after the contacts have had their
-//! say, the joints' rows are solved so that none is violated (`batch`). In a tree that takes time proportional to the joints.
+//! say, the joints' rows are solved so that none is violated (`batch`, `matrix`, `sweep`). In a tree that takes time proportional to the joints.
 //!
 //! Articulations of one shape are solved in lanes, side by side.
 
 mod batch;
 mod carry;
 mod factor;
+mod matrix;
 mod plan;
 mod row;
 mod shape;
+mod sweep;
+mod tension;
 mod triple;
 
 use super::bodies::SolverBodies;
@@ -19,7 +22,6 @@ use super::joints::Joints;
 use super::sleep::Sets;
 use crate::arena::NIL;
 use batch::Batch;
-pub(super) use batch::Mode;
 pub(super) use carry::{CarriedJoint, Rates};
 use core::any::Any;
 use core::cell::Cell;
@@ -28,6 +30,7 @@ use ferrode_math::simd::{Kernel, Lanes, Level, dispatch_few};
 use shape::{JointEnds, Shape};
 use std::collections::HashMap;
 use std::sync::Arc;
+pub(super) use sweep::Mode;
 
 /// Products of blocks per joint, on average, up to which joints that nothing is said of are solved exactly. A chain takes three;
 /// this is a band of six joints.
@@ -66,6 +69,9 @@ pub(super) struct Articulations {
     order: Vec<(u32, u32)>,
     /// Those that are solved side by side: places in this order.
     groups: Vec<Range<usize>>,
+    /// By shapes: whether something else, in some articulation, acts on its bodies.
+    in_company: Vec<bool>,
+    touched: Vec<bool>,
     /// Batches in the lanes of this machine, and of one lane for those that stand alone: `Batches<L>`.
     wide: Option<Box<dyn Any + Send + Sync>>,
     narrow: Option<Box<dyn Any + Send + Sync>>,
@@ -213,6 +219,32 @@ impl Articulations {
         self.order.is_empty()
     }
 
+    /// Finds the shapes on whose bodies, in some articulation, something else acts: `others` are the pairs of bodies that it acts on.
+    ///
+    /// Shapes, not articulations: how they share batches must not show in the results.
+    pub fn find_company(&mut self, bodies: usize, others: impl Iterator<Item = [u32; 2]>) {
+        let Self { in_company, touched, order, members, shapes, .. } = self;
+        in_company.clear();
+        in_company.resize(shapes.len(), false);
+        if order.is_empty() {
+            return;
+        }
+        touched.clear();
+        for body in others.flatten() {
+            touched.resize(bodies, false);
+            if let Some(touched) = touched.get_mut(body as usize) {
+                *touched = true;
+            }
+        }
+        if touched.is_empty() {
+            return;
+        }
+        for (shape, member) in order.iter() {
+            let shape = &mut in_company[*shape as usize];
+            *shape = *shape || members[*member as usize].bodies.iter().any(|body| touched[*body as usize]);
+        }
+    }
+
     /// Does something with all of them.
     pub fn pass(&mut self, level: Level, mut task: Task<'_>, bodies: &mut SolverBodies) {
         if self.order.is_empty() {
@@ -249,7 +281,8 @@ impl Kernel for Run<'_, '_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Articulations { shapes, members, order, groups, wide, narrow, .. } = self.articulations;
+        let Articulations { shapes, members, order, groups, wide, narrow, in_company, .. } =
+            self.articulations;
         let place = if self.wide { wide } else { narrow };
         if let Task::Arrange = self.task {
             let known = place.take().and_then(|b| b.downcast::<Batches<L>>().ok());
@@ -280,7 +313,10 @@ impl Kernel for Run<'_, '_> {
             let shape = &shapes[batch.shape as usize];
             match self.task {
                 Task::Arrange => {}
-                Task::Begin(joints, h) => batch.begin(shape, joints, *h, scales, velocities),
+                Task::Begin(joints, h) => {
+                    let alone = !in_company.get(batch.shape as usize).copied().unwrap_or(true);
+                    batch.begin(shape, joints, (*h, alone), scales, velocities);
+                }
                 Task::Advance(joints, act) => batch.advance(shape, joints, *act, velocities, deltas),
                 Task::Solve(mode) => batch.sweep(*mode, velocities, deltas),
                 Task::Store(joints) => batch.store(&joints.constraints, &mut joints.rows, &mut joints.kept),

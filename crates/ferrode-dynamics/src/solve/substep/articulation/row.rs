@@ -1,6 +1,6 @@
 //! Rows of joints in lanes.
 
-use super::batch::Mode;
+use super::sweep::Aim;
 use super::triple::dot;
 use crate::solve::substep::joints::JointRow;
 use ferrode_math::simd::{Lanes, Mask};
@@ -58,8 +58,8 @@ impl<L: Lanes> LaneRow<L> {
 
     /// What is left of J̃ ũ − target − bias + Γ λ at an impulse λ.
     #[inline(always)]
-    pub fn residual(&self, mode: Mode, velocity: L, impulse: L) -> L {
-        velocity - self.wanted[usize::from(mode == Mode::Relax)] + (self.gamma + self.softness) * impulse
+    pub fn residual(&self, aim: Aim, velocity: L, impulse: L) -> L {
+        velocity - self.wanted[usize::from(aim == Aim::Relax)] + (self.gamma + self.softness) * impulse
     }
 
     /// The angular part of J̃ ũ.
@@ -105,12 +105,11 @@ impl<L: Lanes> Bound<L> {
         self.lo.lt(self.hi) & (from_lo | from_hi)
     }
 
-    /// Guesses where the row takes part, from its impulse and its velocity before the sweep. Whether that is another answer than before.
+    /// Guesses where the row takes part, from its impulse x and its velocity before the sweep. Whether that is another answer than before.
     #[inline(always)]
-    pub fn guess(&mut self, row: &mut LaneRow<L>, mode: Mode, velocity: L) -> bool {
-        let x = row.impulse;
+    pub fn guess(&mut self, row: &mut LaneRow<L>, aim: Aim, velocity: L, x: L) -> bool {
         let inside = self.lo.lt(x) & x.lt(self.hi);
-        let free = inside | self.gives_way(x, row.residual(mode, velocity, x));
+        let free = inside | self.gives_way(x, row.residual(aim, velocity, x));
         let free = L::select(free, L::ONE, L::ZERO);
         let other = (free.lt(row.free) | row.free.lt(free)).any();
         (row.free, self.fixed) = (free, self.clamp(x));
@@ -119,12 +118,12 @@ impl<L: Lanes> Bound<L> {
 
     /// Puts the row to its bound where the impulse `new` is beyond, and where `freeing` frees it if it strives away. Whether it did.
     #[inline(always)]
-    pub fn correct(&mut self, row: &mut LaneRow<L>, mode: Mode, velocity: L, new: L, freeing: bool) -> bool {
+    pub fn correct(&mut self, row: &mut LaneRow<L>, aim: Aim, velocity: L, new: L, freeing: bool) -> bool {
         let takes_part = L::ZERO.lt(row.free);
         let beyond = takes_part & (new.lt(self.lo) | self.hi.lt(new));
         let mut freed = beyond & !beyond;
         if freeing {
-            freed = self.gives_way(new, row.residual(mode, velocity, new)) & !takes_part;
+            freed = self.gives_way(new, row.residual(aim, velocity, new)) & !takes_part;
         }
         self.fixed = L::select(beyond, self.clamp(new), self.fixed);
         row.free = L::select(beyond, L::ZERO, L::select(freed, L::ONE, row.free));
