@@ -58,102 +58,98 @@ impl<L: Lanes> Batch<L> {
     /// One sweep.
     #[inline(always)]
     pub fn sweep(&mut self, mode: Mode, velocities: &[Cell<Record>], deltas: &[Cell<Record>]) {
-        match mode {
-            Mode::Biased(h) => {
-                if !self.gathered {
-                    self.gather(velocities);
-                }
-                self.gathered = false;
-                self.note_velocities();
-                self.guess(Aim::Biased);
-                if self.alone {
-                    self.settle::<2>(Aim::Biased, false);
-                    self.ahead = true;
-                } else {
-                    self.settle::<1>(Aim::Biased, false);
-                    self.accept();
-                }
-                self.bend(h, deltas);
-                self.scatter(velocities);
+        let goes_on = mode == Mode::Relax && core::mem::take(&mut self.ahead);
+        let aim = match mode {
+            Mode::Biased(_) => Aim::Biased,
+            Mode::Relax => Aim::Relax,
+            Mode::Project => Aim::Project,
+        };
+        let both = aim == Aim::Biased && self.alone;
+        let mut solved = false;
+        if goes_on {
+            solved = self.go_on();
+        } else if aim == Aim::Project {
+            self.begin_projection();
+        } else {
+            if !core::mem::take(&mut self.gathered) {
+                self.gather(velocities);
             }
-            Mode::Relax => {
-                if self.ahead {
-                    self.ahead = false;
-                    self.go_on();
-                } else {
-                    self.gather(velocities);
-                    self.note_velocities();
-                    self.guess(Aim::Relax);
-                    self.settle::<1>(Aim::Relax, false);
-                }
-                self.accept();
-                self.scatter(velocities);
+            if !self.bounds.is_empty() {
+                self.before.clone_from(&self.velocities);
             }
-            Mode::Project => {
-                self.velocities.clear();
-                self.velocities.resize(self.bodies.len() + 1, [L::ZERO; 6]);
-                for row in &mut self.rows {
-                    row.free = if row.role == Role::Plain { L::ONE } else { L::ZERO };
-                }
-                for bound in &mut self.bounds {
-                    bound.fixed = self.rows[bound.row as usize].impulse;
-                }
-                self.stale |= !self.bounds.is_empty();
-                if self.stale {
-                    self.factorise();
-                }
-                self.solve::<1>(Aim::Project);
-                self.move_bodies(deltas);
-            }
+            self.guess(aim);
         }
+        self.settle(aim, both, solved);
+        if aim == Aim::Project {
+            return self.move_bodies(deltas);
+        }
+        if both {
+            self.ahead = true;
+        } else {
+            self.accept();
+        }
+        if let Mode::Biased(h) = mode {
+            self.bend(h, deltas);
+        }
+        self.scatter(velocities);
     }
 
-    /// The relaxing sweep after a biased one that has solved for it too.
+    /// Bodies are moved from where they are, by rows without bounds that are no springs.
+    #[inline(always)]
+    fn begin_projection(&mut self) {
+        self.velocities.clear();
+        self.velocities.resize(self.bodies.len() + 1, [L::ZERO; 6]);
+        for row in &mut self.rows {
+            row.free = if row.role == Role::Plain { L::ONE } else { L::ZERO };
+        }
+        for bound in &mut self.bounds {
+            bound.fixed = self.rows[bound.row as usize].impulse;
+        }
+        self.stale |= !self.bounds.is_empty();
+    }
+
+    /// The relaxing sweep after a biased one that has solved for it too; whether that stands.
     ///
     /// What it ends with is what it would have ended with from the velocities before the biased sweep. So lanes whose rows hold or give way
     /// as they did keep what is solved, to the bit, also when others are solved again.
     #[inline(always)]
-    fn go_on(&mut self) {
-        if !self.bounds.is_empty() {
-            self.guess_on();
-        }
+    fn go_on(&mut self) -> bool {
+        self.guess_on();
         if self.stale {
             self.velocities.clone_from(&self.before);
-        } else {
-            core::mem::swap(&mut self.velocities, &mut self.relaxed);
-            for change in &mut self.changes {
-                change[0] = change[1];
-            }
+            return false;
         }
-        self.settle::<1>(Aim::Relax, !self.stale);
+        core::mem::swap(&mut self.velocities, &mut self.relaxed);
+        for change in &mut self.changes {
+            change[0] = change[1];
+        }
+        true
     }
 
-    /// Finds which rows with bounds take part, and solves for the velocities and the changes of the impulses; with N = 2 also for those of the
-    /// relaxing sweep. `solved`: they are there for the first trial.
+    /// Finds which rows with bounds take part, and solves for the velocities and the changes of the impulses; if for `both`, also for those of
+    /// the relaxing sweep. `solved`: they are there for the first trial.
+    ///
+    /// All kinds of sweep come through here, since what is called in several places is compiled as often.
     #[inline(always)]
-    fn settle<const N: usize>(&mut self, aim: Aim, solved: bool) {
+    fn settle(&mut self, aim: Aim, both: bool, solved: bool) {
         for trial in 0..TRIALS {
             if trial > 0 {
                 self.velocities.clone_from(&self.before);
             }
-            if !(solved && trial == 0) {
+            if !solved || trial > 0 {
                 if self.stale {
                     self.factorise();
                 }
-                self.solve::<N>(aim);
+                if both {
+                    self.solve::<2>(aim);
+                } else {
+                    self.solve::<1>(aim);
+                }
             }
-            if self.bounds.is_empty() || !self.correct(aim, trial < FREEING) {
+            if aim == Aim::Project || self.bounds.is_empty() || !self.correct(aim, trial < FREEING) {
                 break;
             }
             self.stale = true;
-        }
-    }
-
-    /// Keeps the velocities before a sweep that may need more than one trial.
-    #[inline(always)]
-    fn note_velocities(&mut self) {
-        if !self.bounds.is_empty() {
-            self.before.clone_from(&self.velocities);
         }
     }
 
