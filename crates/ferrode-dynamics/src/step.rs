@@ -245,8 +245,11 @@ impl World {
                 [work] => work.solve(h, &self.params.direct, report.islands, direct),
                 works => {
                     let (settings, number, past) = (&self.params.direct, report.islands, &*direct);
-                    self.crew.each(chunks(works, ABREAST), |i, works| {
-                        direct::solve_all(works, h, settings, number + ABREAST * i, past);
+                    // Among threads few islands are shared out one by one.
+                    let threads = self.crew.threads();
+                    let some = if threads > 1 && works.len() < ABREAST * threads { 1 } else { ABREAST };
+                    self.crew.each(chunks(works, some), |i, works| {
+                        direct::solve_all(works, h, settings, number + some * i, past);
                     });
                 }
             }
