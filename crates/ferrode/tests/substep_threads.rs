@@ -64,16 +64,17 @@ fn same_bits(scene: fn() -> World, bodies: usize, points: usize, mut act: impl F
 fn a_pyramid() {
     let scene = || {
         let mut world = world();
-        for row in 0..24 {
-            for i in 0..24 - row {
-                let x = (f64::from(i) - 0.5 * f64::from(23 - row)) * 1.05;
+        for row in 0..30 {
+            for i in 0..30 - row {
+                let x = (f64::from(i) - 0.5 * f64::from(29 - row)) * 1.05;
                 let at = Vec3::new(x, 0.0, 0.5 + f64::from(row));
                 add(&mut world, at, Quat::IDENTITY, Cuboid::new(Vec3::splat(1.0)).unwrap());
             }
         }
         world
     };
-    same_bits(scene, 300, 2000, |_, _| {});
+    // Enough for two parts.
+    same_bits(scene, 465, 3000, |_, _| {});
 }
 
 #[test]
@@ -223,8 +224,10 @@ fn joints_kinematic_and_fast_bodies() {
 #[test]
 fn worlds_share_helpers_and_clones_go_on_alike() {
     let mut world = world();
-    for i in 0..300u32 {
-        let at = Vec3::new(f64::from(i % 10) * 0.9, f64::from(i / 10 % 10) * 0.9, 0.5 + f64::from(i / 100));
+    // Enough for four parts. They topple to one side, so that these are cut anew meanwhile.
+    for i in 0..900u32 {
+        let layer = f64::from(i / 100);
+        let at = Vec3::new(f64::from(i % 10) * 0.9 + 0.3 * layer, f64::from(i / 10 % 10) * 0.9, 0.5 + layer);
         add(&mut world, at, Quat::IDENTITY, Cuboid::new(Vec3::splat(0.85)).unwrap());
     }
     world.set_threads(2);

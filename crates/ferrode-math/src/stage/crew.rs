@@ -77,6 +77,12 @@ impl Crew {
         (0..tasks).for_each(task);
     }
 
+    /// Whether the helpers are at work.
+    #[cfg(test)]
+    pub(super) fn is_busy(&self) -> bool {
+        self.helpers.as_ref().is_some_and(|h| h.shared.busy.load(Ordering::Relaxed))
+    }
+
     /// Lets the helpers sleep until the next run: there is none for a while.
     pub fn rest(&self) {
         if let Some(helpers) = &self.helpers {

@@ -1,12 +1,14 @@
 //! Records that tasks reach by index, no two of them the same.
 
-use super::{Crew, chunks};
+use super::{Crew, cut};
 use crate::simd::{Lanes, NO_RECORD, Record};
 use core::cell::Cell;
 use core::ops::Range;
+use core::sync::atomic::{AtomicBool, AtomicU16, Ordering};
 
-/// For each item of a list the records that it touches: two of them per lane. The list is in groups; items of one group touch
-/// different records, which [`Exclusive::verify`] makes sure of, and may be worked on side by side.
+/// For each item of a list the records that it touches: two of them per lane. The list is in groups, and these in parts. Items of a part
+/// are worked on in turn; the parts of one group touch different records, which [`Exclusive::verify`] makes sure of, and may be worked on
+/// side by side.
 ///
 /// ```
 /// use ferrode_math::simd::{Kernel, Lanes, NO_RECORD, Record, Work, dispatch};
@@ -32,14 +34,15 @@ use core::ops::Range;
 ///     type Out = ();
 ///     fn run<L: Lanes>(self) {
 ///         let mut pairs = Exclusive::<L>::default();
-///         for (row, pair) in pairs.begin([0..2], 2).iter_mut().zip([[0, 1], [2, 3]]) {
+///         // One group of two parts, of one item each.
+///         for (row, pair) in pairs.begin([[1, 2]], 2).iter_mut().zip([[0, 1], [2, 3]]) {
 ///             for (index, record) in row.iter_mut().zip(pair) {
 ///                 index.as_mut().fill(NO_RECORD);
 ///                 index.as_mut()[0] = record;
 ///             }
 ///         }
 ///         pairs.verify(self.0, self.1.len());
-///         pairs.sweep(self.0, 0, 1, &mut [(); 2], self.1, |lot| L::enter(SwapLot(lot)));
+///         pairs.sweep(self.0, 0, &mut [(); 2], self.1, |lot| L::enter(SwapLot(lot)));
 ///     }
 /// }
 ///
@@ -50,39 +53,56 @@ use core::ops::Range;
 #[derive(Debug)]
 pub struct Exclusive<L: Lanes> {
     rows: Vec<[L::Index; 2]>,
+    /// Ends of the parts of all groups.
+    ends: Vec<usize>,
     groups: Vec<Group>,
 }
 
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 struct Group {
-    items: Range<usize>,
-    /// No record is touched twice.
-    apart: bool,
-    /// A bit per record, for finding that out.
-    seen: Vec<u64>,
+    /// Where its items begin.
+    first: usize,
+    /// Places in the ends of parts.
+    parts: Range<usize>,
+    /// No record is touched by two parts.
+    apart: AtomicBool,
+    /// For each record a part that touches it, if one does.
+    owners: Vec<AtomicU16>,
 }
+
+/// Most parts of a group that are worked on side by side.
+const MOST_PARTS: usize = u16::MAX as usize;
 
 impl<L: Lanes> Default for Exclusive<L> {
     fn default() -> Self {
-        Self { rows: Vec::new(), groups: Vec::new() }
+        Self { rows: Vec::new(), ends: Vec::new(), groups: Vec::new() }
     }
 }
 
 impl<L: Lanes> Exclusive<L> {
-    /// Starts anew with the items of each group, and returns a row for each item to be filled in: the records' indices, or
-    /// [`NO_RECORD`].
-    pub fn begin(
+    /// Starts anew: for each group, one after the other, the ends of its parts in the list of items. Returns a row for each item to be
+    /// filled in: the records' indices, or [`NO_RECORD`].
+    pub fn begin<G: IntoIterator<Item = usize>>(
         &mut self,
-        groups: impl IntoIterator<Item = Range<usize>>,
+        groups: impl IntoIterator<Item = G>,
         items: usize,
     ) -> &mut [[L::Index; 2]] {
-        let mut count = 0;
-        for range in groups {
+        self.ends.clear();
+        let (mut count, mut first) = (0, 0);
+        for ends in groups {
             if count == self.groups.len() {
                 self.groups.push(Group::default());
             }
-            let items = range.start.min(items)..range.end.min(items);
-            (self.groups[count].items, self.groups[count].apart) = (items, false);
+            let start = self.ends.len();
+            let mut end = first;
+            for next in ends {
+                end = next.clamp(end, items.max(end));
+                self.ends.push(end);
+            }
+            let group = &mut self.groups[count];
+            (group.first, group.parts) = (first, start..self.ends.len());
+            *group.apart.get_mut() = false;
+            first = end;
             count += 1;
         }
         self.groups.truncate(count);
@@ -90,57 +110,106 @@ impl<L: Lanes> Exclusive<L> {
         &mut self.rows
     }
 
-    /// Looks whether the items of each group touch different ones of `records` records. Items of groups that don't are worked on one
-    /// after the other.
+    /// Looks whether the parts of each group touch different ones of `records` records. Parts that don't are worked on one
+    /// after the other, as all are where there is one thread.
     pub fn verify(&mut self, crew: &Crew, records: usize) {
-        let Self { rows, groups } = self;
-        crew.each(chunks(groups, 1), |_, group| {
-            for group in group {
-                group.seen.clear();
-                group.seen.resize(records.div_ceil(64), 0);
-                let rows = rows.get(group.items.clone()).unwrap_or_default();
-                let mut apart = true;
-                for i in rows.iter().flatten().flat_map(|index| index.as_ref()) {
-                    if *i == NO_RECORD {
-                        continue;
-                    }
-                    let bit = 1u64 << (i & 63);
-                    match group.seen.get_mut((i >> 6) as usize) {
-                        Some(word) if *word & bit == 0 => *word |= bit,
-                        _ => apart = false,
-                    }
+        if crew.threads() == 1 {
+            return;
+        }
+        let Self { rows, ends, groups } = self;
+        let mut tasks = 0;
+        for group in groups.iter_mut().filter(|group| group.is_shared()) {
+            group.owners.resize_with(records, AtomicU16::default);
+            *group.apart.get_mut() = true;
+            tasks += group.parts.len();
+        }
+        if tasks == 0 {
+            return;
+        }
+        let (rows, ends, groups) = (&*rows, &*ends, &*groups);
+        let part = |task: usize, look: &(dyn Fn(&Group, u16, u32) + Sync)| {
+            let Some((group, number)) = shared_part(groups, task) else { return };
+            let items = group.items(ends, number);
+            for i in rows.get(items).unwrap_or_default().iter().flatten().flat_map(|index| index.as_ref()) {
+                if *i != NO_RECORD {
+                    look(group, number as u16, *i);
                 }
-                group.apart = apart;
             }
+        };
+        // Each writes itself down at its records; where two do, one of them finds the other there.
+        crew.run(tasks, |task| {
+            part(task, &|group, number, i| match group.owners.get(i as usize) {
+                Some(owner) => owner.store(number, Ordering::Relaxed),
+                None => group.apart.store(false, Ordering::Relaxed),
+            });
+        });
+        crew.run(tasks, |task| {
+            part(task, &|group, number, i| {
+                if group.owners.get(i as usize).is_none_or(|owner| owner.load(Ordering::Relaxed) != number) {
+                    group.apart.store(false, Ordering::Relaxed);
+                }
+            });
         });
     }
 
-    /// Calls `work` with all items of a group in lots of `size`, side by side: `items` are those of the group, in the order of its rows.
+    /// Calls `work` with the items of each part of a group, side by side: `items` are those of the group, in the order of its rows.
     pub fn sweep<T: Send>(
         &self,
         crew: &Crew,
         group: usize,
-        size: usize,
         items: &mut [T],
         records: &mut [Record],
         work: impl Fn(Lot<'_, L, T>) + Sync,
     ) {
         let Some(group) = self.groups.get(group) else { return };
-        let rows = self.rows.get(group.items.clone()).unwrap_or_default();
         let whole = Cell::from_mut(records).as_slice_of_cells();
-        if !group.apart || crew.threads() == 1 {
-            return work(Lot { rows, items, records: whole });
+        let rows = |part: usize| self.rows.get(group.items(&self.ends, part)).unwrap_or_default();
+        let apart = group.apart.load(Ordering::Relaxed);
+        if !apart || crew.threads() == 1 {
+            let mut rest = items;
+            for part in 0..group.parts.len() {
+                let rows = rows(part);
+                let (items, after) = rest.split_at_mut(rows.len().min(rest.len()));
+                rest = after;
+                work(Lot { rows, items, records: whole });
+            }
+            return;
         }
         let shared = Shared { start: whole.as_ptr(), len: whole.len() };
-        crew.each(chunks(items, size), |number, items| {
-            let rows = rows.get(number * size..).unwrap_or_default();
+        let ends = &self.ends[group.parts.clone()];
+        crew.each(cut(items, group.first, ends), |number, items| {
             // SAFETY: the cells are borrowed for the whole call. Through a lot they are reached by the indices of its rows alone
-            // (`Touch` keeps them to itself, and `Lanes` is sealed). Those of one group were found to be all different, rows
-            // can't change meanwhile, and each lot has rows of its own: so no cell is reached by two tasks.
+            // (`Touch` keeps them to itself, and `Lanes` is sealed). Those of one part were found to be none of another part's, rows
+            // can't change meanwhile, and each part is worked on by one task: so no cell is reached by two tasks.
             let records = unsafe { shared.cells() };
-            work(Lot { rows, items, records });
+            work(Lot { rows: rows(number), items, records });
         });
     }
+}
+
+impl Group {
+    /// Whether there is something to share out.
+    fn is_shared(&self) -> bool {
+        (2..=MOST_PARTS).contains(&self.parts.len())
+    }
+
+    /// The items of a part.
+    fn items(&self, ends: &[usize], part: usize) -> Range<usize> {
+        let at = self.parts.start + part;
+        let first = if part == 0 { self.first } else { ends[at - 1] };
+        first..ends[at]
+    }
+}
+
+/// A part by its number among the parts of all groups that have several.
+fn shared_part(groups: &[Group], mut number: usize) -> Option<(&Group, usize)> {
+    for group in groups.iter().filter(|group| group.is_shared()) {
+        if number < group.parts.len() {
+            return Some((group, number));
+        }
+        number -= group.parts.len();
+    }
+    None
 }
 
 /// Cells on their way to other threads.

@@ -33,7 +33,7 @@ mod pieces;
 
 pub use crew::Crew;
 pub use exclusive::{Exclusive, Lot, Touch};
-pub use pieces::{Chunks, Pieces, chunks};
+pub use pieces::{Chunks, Cut, Pieces, chunks, cut};
 
 #[cfg(test)]
 mod tests;

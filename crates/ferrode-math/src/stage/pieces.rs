@@ -57,6 +57,49 @@ impl<'a, T: Send> Pieces for Chunks<'a, T> {
     }
 }
 
+/// Cuts a slice, whose first item has the number `first`: each piece ends before the item with one of the numbers `ends`, and begins
+/// where the one before it ends.
+///
+/// # Panics
+/// When the ends don't ascend, or lie outside the slice.
+pub fn cut<'a, T: Send>(list: &'a mut [T], first: usize, ends: &'a [usize]) -> Cut<'a, T> {
+    let last = ends.iter().fold(first, |before, end| {
+        assert!(before <= *end, "a piece ends before it begins");
+        *end
+    });
+    assert!(last - first <= list.len(), "a piece ends beyond the slice");
+    Cut { start: list.as_mut_ptr(), first, ends, list: PhantomData }
+}
+
+/// A slice in pieces of different lengths.
+pub struct Cut<'a, T> {
+    start: *mut T,
+    first: usize,
+    ends: &'a [usize],
+    list: PhantomData<&'a mut [T]>,
+}
+
+// SAFETY: as for `Chunks`.
+unsafe impl<T: Send> Sync for Cut<'_, T> {}
+
+impl<T> sealed::Sealed for Cut<'_, T> {}
+
+impl<'a, T: Send> Pieces for Cut<'a, T> {
+    type Piece = &'a mut [T];
+
+    fn count(&self) -> usize {
+        self.ends.len()
+    }
+
+    unsafe fn piece(&self, number: usize) -> &'a mut [T] {
+        let first = if number == 0 { self.first } else { self.ends[number - 1] };
+        let len = self.ends[number] - first;
+        // SAFETY: `cut` has seen that the ends ascend from `first` and stay within the slice, which is borrowed for 'a; so pieces of
+        // different numbers don't overlap, and none is lent twice.
+        unsafe { core::slice::from_raw_parts_mut(self.start.add(first - self.first), len) }
+    }
+}
+
 macro_rules! tuples {
     ($(($($name:ident $place:tt),+))+) => {$(
         impl<$($name: Pieces),+> sealed::Sealed for ($($name,)+) {}

@@ -1,4 +1,4 @@
-use super::{Crew, Exclusive, Lot, chunks};
+use super::{Crew, Exclusive, Lot, Pieces, chunks, cut};
 use crate::simd::{Kernel, Lanes, Level, NO_RECORD, Record, Work, dispatch_at};
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -94,11 +94,11 @@ fn who_finds_the_helpers_busy_works_alone() {
     assert_eq!(done.into_inner(), 64 + 4800);
 }
 
-/// Adds to records, group by group; tells how many lots each group came in.
+/// Adds to records, group by group; tells how many lots each group came in, and how many of them tasks of the crew had.
 struct Add<'a> {
     crew: &'a Crew,
     rows: &'a [[u32; 2]],
-    groups: &'a [core::ops::Range<usize>],
+    groups: &'a [Vec<usize>],
     records: &'a mut [Record],
 }
 
@@ -119,9 +119,9 @@ impl<L: Lanes> Work<L> for AddLot<'_, L> {
 }
 
 impl Kernel for Add<'_> {
-    type Out = Vec<u32>;
+    type Out = Vec<[u32; 2]>;
 
-    fn run<L: Lanes>(self) -> Vec<u32> {
+    fn run<L: Lanes>(self) -> Vec<[u32; 2]> {
         let mut lists = Exclusive::<L>::default();
         let rows = lists.begin(self.groups.iter().cloned(), self.rows.len());
         for (row, pair) in rows.iter_mut().zip(self.rows) {
@@ -133,25 +133,31 @@ impl Kernel for Add<'_> {
         lists.verify(self.crew, self.records.len());
         let mut items: Vec<u32> = (0..self.rows.len() as u32).collect();
         let mut lots = Vec::new();
-        for (group, range) in self.groups.iter().enumerate() {
-            let count = AtomicU32::new(0);
-            lists.sweep(self.crew, group, 3, &mut items[range.clone()], self.records, |lot| {
+        let mut first = 0;
+        for (group, ends) in self.groups.iter().enumerate() {
+            let (count, tasks, end) = (AtomicU32::new(0), AtomicU32::new(0), ends[ends.len() - 1]);
+            let items = &mut items[core::mem::replace(&mut first, end)..end];
+            lists.sweep(self.crew, group, items, self.records, |lot| {
                 count.fetch_add(1, Ordering::Relaxed);
+                tasks.fetch_add(u32::from(self.crew.is_busy()), Ordering::Relaxed);
                 L::enter(AddLot(lot));
             });
-            lots.push(count.into_inner());
+            lots.push([count.into_inner(), tasks.into_inner()]);
         }
         lots
     }
 }
 
 #[test]
-fn groups_that_share_records_are_worked_on_in_order() {
-    // The first group has each record once, the second has one twice, the third one that is not there.
+fn parts_that_share_records_are_worked_on_in_order() {
+    // The parts of the first group have records of their own, those of the second share one, one of the third has one that is not there,
+    // and in the fourth a part has one twice, which is its own affair.
     let mut rows: Vec<[u32; 2]> = (0..32).map(|i| [2 * i, 2 * i + 1]).collect();
     rows.extend((0..20).map(|i| [i, if i == 11 { 3 } else { 63 - i }]));
     rows.extend((0..12).map(|i| [i, if i == 5 { 64 } else { NO_RECORD }]));
-    let groups = [0..32, 32..52, 52..64];
+    rows.extend((0..12).map(|i| [i / 3, if i == 5 { 1 } else { 63 - i }]));
+    let lots = |first: usize, end: usize| (first + 3..end).step_by(3).chain([end]).collect();
+    let groups: [Vec<usize>; 4] = [lots(0, 32), lots(32, 52), lots(52, 64), lots(64, 76)];
     let run = |threads, level| {
         let mut records: Vec<Record> = (0..64).map(|i| Record([i as f32; 8])).collect();
         let crew = Crew::new(threads);
@@ -161,12 +167,28 @@ fn groups_that_share_records_are_worked_on_in_order() {
         (lots, bits)
     };
     let (lots, alone) = run(1, Level::Scalar);
-    assert_eq!(lots, [1, 1, 1]);
+    assert_eq!(lots, [11, 7, 4, 4].map(|n| [n, 0]));
     for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
         for threads in [1, 2, 4] {
             let (lots, bits) = run(threads, level);
-            assert_eq!(lots, if threads == 1 { [1, 1, 1] } else { [11, 1, 1] });
+            let shared = if threads == 1 { [0; 4] } else { [11, 0, 0, 4] };
+            assert_eq!(
+                lots.iter().map(|lots| lots[1]).collect::<Vec<_>>(),
+                shared,
+                "{level:?}, {threads} threads"
+            );
             assert!(bits == alone, "{level:?}, {threads} threads");
         }
     }
+}
+
+#[test]
+fn cuts_that_overlap_are_refused() {
+    let mut list = [0u8; 10];
+    for ends in [&[4, 3][..], &[11], &[2, 5, 13]] {
+        assert!(catch_unwind(AssertUnwindSafe(|| cut(&mut list, 0, ends).count())).is_err(), "{ends:?}");
+    }
+    let crew = Crew::new(2);
+    crew.each(cut(&mut list, 5, &[5, 8, 14]), |i, piece| piece.fill(i as u8 + 1));
+    assert_eq!(list, [2, 2, 2, 3, 3, 3, 3, 3, 3, 0]);
 }

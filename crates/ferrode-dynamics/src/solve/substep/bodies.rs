@@ -42,6 +42,9 @@ pub(super) struct SolverBodies {
     pub motions: Vec<Record>,
     /// Whether forces of the caller's act on a body.
     pub pushed: Vec<bool>,
+    /// Where bodies are, from `origin`, which is where the first one is.
+    pub centres: Vec<[f32; 3]>,
+    pub origin: Vec3,
 }
 
 impl SolverBodies {
@@ -53,6 +56,7 @@ impl SolverBodies {
     fn resize(&mut self) {
         let count = self.slots.len();
         self.pushed.resize(count, false);
+        self.centres.resize(count, [0.0; 3]);
         for list in [
             &mut self.velocities,
             &mut self.deltas,
@@ -74,12 +78,15 @@ impl SolverBodies {
     pub fn fill(&mut self, crew: &Crew, world: &Arena<Body>, gravity: Vec3, h: f64) -> Gathered {
         self.resize();
         let (unusable, watched) = (AtomicBool::new(false), AtomicBool::new(false));
-        let Self { slots, velocities, deltas, scales, accelerations, references, totals, motions, pushed } =
-            self;
+        let origin = self.slots.first().map_or(Vec3::ZERO, |slot| world.at(*slot).frame.position);
+        self.origin = origin;
+        let Self { slots, velocities, deltas, scales, accelerations, references, totals, motions, .. } = self;
+        let (pushed, centres) = (&mut self.pushed, &mut self.centres);
         let moving = (chunks(velocities, SHARE), chunks(deltas, SHARE), chunks(references, SHARE));
         let still = (chunks(scales, SHARE), chunks(accelerations, SHARE), chunks(motions, SHARE));
-        let lists = (moving, still, chunks(totals, SHARE), chunks(pushed, SHARE));
-        crew.each(lists, |share, (moving, still, totals, pushed)| {
+        let other = (chunks(pushed, SHARE), chunks(centres, SHARE));
+        let lists = (moving, still, chunks(totals, SHARE), other);
+        crew.each(lists, |share, (moving, still, totals, (pushed, centres))| {
             let (velocities, deltas, references) = moving;
             let (scales, accelerations, motions) = still;
             deltas.fill(Record::ZERO);
@@ -93,6 +100,7 @@ impl SolverBodies {
                 if body.moved.is_some() {
                     watched.store(true, Ordering::Relaxed);
                 }
+                centres[i] = to_f32(body.frame.position - origin);
                 pushed[i] = body.force != Vec3::ZERO || body.torque != Vec3::ZERO;
                 let known = Known::new(body, gravity, h);
                 (velocities[i], scales[i]) = (known.velocity, known.scale);

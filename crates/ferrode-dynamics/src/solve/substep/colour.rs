@@ -13,27 +13,29 @@ pub(super) const OVERFLOW: usize = COLOURS;
 /// Hands out colours.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Colouring {
-    used: Vec<u32>,
+    /// Of each body, within its part and between parts.
+    used: Vec<[u32; 2]>,
 }
 
 impl Colouring {
     /// Starts anew, for `bodies` bodies.
     pub fn begin(&mut self, bodies: usize) {
         self.used.clear();
-        self.used.resize(bodies, 0);
+        self.used.resize(bodies, [0; 2]);
     }
 
-    /// The colour of a constraint between two bodies; `None` for one that nothing moves.
+    /// The colour of a constraint between two bodies, `None` for one that nothing moves: among those within parts, or among those between.
     #[inline]
-    pub fn colour(&mut self, bodies: [Option<u32>; 2]) -> usize {
-        let used = |body: Option<u32>| body.map_or(0, |body| self.used[body as usize]);
+    pub fn colour(&mut self, bodies: [Option<u32>; 2], between: bool) -> usize {
+        let set = usize::from(between);
+        let used = |body: Option<u32>| body.map_or(0, |body| self.used[body as usize][set]);
         let free = !(used(bodies[0]) | used(bodies[1]));
         let colour = free.trailing_zeros() as usize;
         if colour >= COLOURS {
             return OVERFLOW;
         }
         for body in bodies.into_iter().flatten() {
-            self.used[body as usize] |= 1 << colour;
+            self.used[body as usize][set] |= 1 << colour;
         }
         colour
     }
@@ -55,7 +57,7 @@ mod tests {
             if pair[0] == pair[1] {
                 continue;
             }
-            let colour = colouring.colour(pair);
+            let colour = colouring.colour(pair, false);
             if colour == OVERFLOW {
                 overflowed += 1;
                 continue;

@@ -2,6 +2,7 @@
 
 use super::Workspace;
 use super::bodies::SolverBodies;
+use super::colour::OVERFLOW;
 use super::contact::{self, ManifoldKey, NOT_SOLVED};
 use super::manifold::{ContactManifold, STATIC, check_surface};
 use super::room::make_room;
@@ -91,7 +92,7 @@ pub(super) fn check_surfaces(
 impl World {
     /// Finds the bodies and the colour of each manifold, and sorts them.
     pub(super) fn colour_manifolds(&mut self, manifolds: &[ContactManifold], work: &mut Workspace) {
-        let Workspace { bodies, contacts, places, surfaces, keyed, colouring, active, .. } = work;
+        let Workspace { bodies, contacts, places, surfaces, keyed, parts, colouring, active, .. } = work;
         let keys = &mut contacts.keys;
         make_room(keys, active.len());
         keys.resize(active.len(), ManifoldKey::LEFT_OUT);
@@ -105,10 +106,16 @@ impl World {
                 *key = keying.key(*place, &manifolds[*place as usize], found);
             }
         });
+        contacts.parts = parts.find(&self.crew, bodies, keys);
         colouring.begin(bodies.len());
         for key in keys.iter_mut().filter(|key| key.sort != NOT_SOLVED) {
-            let coloured = [0, 1].map(|side| key.movable[side].then_some(key.bodies[side]));
-            key.sort += contact::sort_key(colouring.colour(coloured), false, contact::MOST_POINTS);
+            let movable = key.movable_bodies();
+            let section = parts.section(movable);
+            let (section, colour) = match colouring.colour(movable, section == contacts.parts) {
+                OVERFLOW => (contacts.parts + 1, 0),
+                colour => (section, colour),
+            };
+            key.sort += contact::sort_key(section, colour, false, contact::MOST_POINTS);
         }
         contacts.has_bounce = keyed.iter().any(|found| found.has_bounce);
         contacts.arrange();
@@ -142,7 +149,7 @@ impl Keying<'_> {
                     let kinematic = (0..2).any(|side| places[side] != NIL && !movable[side]);
                     let special = surface.special || kinematic;
                     found.has_bounce |= surface.bounce > 0.0;
-                    let sort = contact::sort_key(0, special, manifold.len());
+                    let sort = contact::sort_key(0, 0, special, manifold.len());
                     return ManifoldKey { bodies: places, place, movable, sort };
                 }
             }

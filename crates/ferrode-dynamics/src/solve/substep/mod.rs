@@ -21,6 +21,7 @@ mod far;
 mod joints;
 mod keys;
 mod manifold;
+mod parts;
 mod room;
 mod settings;
 mod sleep;
@@ -46,9 +47,10 @@ use ferrode_math::Vec3;
 use ferrode_math::simd::Level;
 use ferrode_math::stage::chunks;
 use joints::{JointContext, JointMemory, Joints, When};
+use parts::Parts;
 use surface::SurfaceCoefficients;
 
-/// Memory that is kept from step to step. Only the joints' impulses hold something of the past.
+/// Memory that is kept from step to step. Only the joints' impulses and the world's parts hold something of the past.
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
     memory: Vec<JointMemory>,
@@ -58,6 +60,7 @@ pub(crate) struct Workspace {
     contacts: Contacts,
     joints: Joints,
     articulations: Articulations,
+    parts: Parts,
     colouring: Colouring,
     keyed: Vec<keys::Keyed>,
     surfaces: Vec<SurfaceCoefficients>,
@@ -80,7 +83,12 @@ pub(crate) struct Workspace {
 
 impl Clone for Workspace {
     fn clone(&self) -> Self {
-        Self { memory: self.memory.clone(), last_h: self.last_h, ..Self::default() }
+        Self {
+            memory: self.memory.clone(),
+            last_h: self.last_h,
+            parts: self.parts.clone(),
+            ..Self::default()
+        }
     }
 }
 

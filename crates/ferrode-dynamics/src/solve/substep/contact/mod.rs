@@ -16,7 +16,7 @@ mod sweep;
 mod vector;
 
 use super::bodies::SolverBodies;
-use super::colour::{COLOURS, OVERFLOW};
+use super::colour::COLOURS;
 use super::manifold::{ContactManifold, MANIFOLD_POINTS};
 use super::room::make_room;
 use super::soft::Coefficients;
@@ -119,8 +119,11 @@ struct Batches<L: Lanes> {
     spans: Vec<Span>,
     /// The bodies of each batch, in groups by colour.
     bodies: Exclusive<L>,
-    /// The batches of each colour, the overflow last.
-    colours: Vec<Range<usize>>,
+    /// Ends of the parts of all groups in the list of batches.
+    ends: Vec<usize>,
+    /// What is worked on one after the other, by places in `ends`: the parts of the world, and then each colour between them, or the
+    /// overflow.
+    groups: Vec<Range<usize>>,
 }
 
 impl<L: Lanes> Default for Batches<L> {
@@ -129,7 +132,8 @@ impl<L: Lanes> Default for Batches<L> {
             list: Vec::new(),
             spans: Vec::new(),
             bodies: Exclusive::default(),
-            colours: vec![0..0; COLOURS + 1],
+            ends: Vec::new(),
+            groups: Vec::new(),
         }
     }
 }
@@ -139,8 +143,10 @@ impl<L: Lanes> Default for Batches<L> {
 pub(super) struct Contacts {
     /// Keys by colour and kind.
     pub order: Vec<u32>,
-    /// Where each colour begins in `order`; the overflow and the end come last.
-    starts: [u32; COLOURS + 2],
+    /// Parts of the world: sections of the order before the one for what lies between parts, which the overflow follows.
+    pub parts: usize,
+    /// Where each colour of each section begins in `order`; the overflow and the end come last.
+    starts: Vec<u32>,
     /// Of each manifold that counts.
     pub keys: Vec<ManifoldKey>,
     /// Batches in the lanes of this machine: `Batches<L>`.
@@ -165,6 +171,12 @@ pub(super) struct ManifoldKey {
 }
 
 impl ManifoldKey {
+    /// The bodies that forces move.
+    #[inline]
+    pub fn movable_bodies(&self) -> [Option<u32>; 2] {
+        [0, 1].map(|side| self.movable[side].then_some(self.bodies[side]))
+    }
+
     /// The key of a manifold that is not solved.
     pub const LEFT_OUT: Self =
         Self { bodies: [u32::MAX; 2], place: u32::MAX, movable: [false; 2], sort: NOT_SOLVED };
@@ -175,11 +187,12 @@ pub(super) const NOT_SOLVED: u16 = u16::MAX;
 /// Points of a manifold whose sorting key is that of its colour alone, if it is a plain one.
 pub(super) const MOST_POINTS: usize = MANIFOLD_POINTS;
 /// Kinds of manifolds within a colour: plain and special ones with 4, 3, 2, 1 points.
-const KINDS: usize = 8;
+const KINDS: usize = 2 * MANIFOLD_POINTS;
 
-/// The sorting key of a manifold with `points` points.
-pub(super) fn sort_key(colour: usize, special: bool, points: usize) -> u16 {
-    (colour * KINDS + usize::from(special) * 4 + (MANIFOLD_POINTS - points)) as u16
+/// The sorting key of a manifold with `points` points: sections one after the other, and their colours.
+pub(super) fn sort_key(section: usize, colour: usize, special: bool, points: usize) -> u16 {
+    (((section * COLOURS + colour) * 2 + usize::from(special)) * MANIFOLD_POINTS + (MANIFOLD_POINTS - points))
+        as u16
 }
 
 /// What all passes need.
@@ -209,13 +222,14 @@ pub(super) enum Pass {
 impl Contacts {
     /// Number of rows: those along normals, and three of friction per manifold.
     pub fn row_count(&self) -> usize {
-        let points = |key: &ManifoldKey| MANIFOLD_POINTS - usize::from(key.sort) % 4;
+        let points = |key: &ManifoldKey| MANIFOLD_POINTS - usize::from(key.sort) % MANIFOLD_POINTS;
         self.keys.iter().filter(|key| key.sort != NOT_SOLVED).map(|key| points(key) + 3).sum()
     }
 
     /// Sorts the manifolds by their keys.
     pub fn arrange(&mut self) {
-        let kinds = (COLOURS + 1) * KINDS;
+        let colours = (self.parts + 1) * COLOURS;
+        let kinds = (colours + 1) * KINDS;
         self.counts.clear();
         self.counts.resize(kinds + 1, 0);
         let solved = |key: &&ManifoldKey| key.sort != NOT_SOLVED;
@@ -225,9 +239,8 @@ impl Contacts {
         for k in 0..kinds {
             self.counts[k + 1] += self.counts[k];
         }
-        for (colour, start) in self.starts.iter_mut().enumerate() {
-            *start = self.counts[colour * KINDS];
-        }
+        self.starts.clear();
+        self.starts.extend((0..colours + 2).map(|colour| self.counts[colour * KINDS]));
         self.order.clear();
         make_room(&mut self.order, self.counts[kinds] as usize);
         self.order.resize(self.counts[kinds] as usize, 0);
@@ -242,9 +255,8 @@ impl Contacts {
 
     /// Makes the rows of all manifolds.
     pub fn prepare(&mut self, level: Level, crew: &Crew, context: &Context<'_>) {
-        dispatch_at(level, Prepare { contacts: self, crew, context, colours: 0..COLOURS, wide: true });
-        let colours = OVERFLOW..OVERFLOW + 1;
-        dispatch_at(Level::Scalar, Prepare { contacts: self, crew, context, colours, wide: false });
+        dispatch_at(level, Prepare { contacts: self, crew, context, wide: true });
+        dispatch_at(Level::Scalar, Prepare { contacts: self, crew, context, wide: false });
     }
 
     /// Makes a pass over all manifolds, colour after colour, the overflow last.
@@ -262,7 +274,8 @@ impl Contacts {
         if let Some(batches) = &mut self.wide {
             dispatch_at(level, sweep::Sweep { batches: &mut **batches, crew, bodies, pass, h, elapsed });
         }
-        if self.starts[OVERFLOW] != self.starts[OVERFLOW + 1]
+        if let [.., overflow, end] = self.starts[..]
+            && overflow != end
             && let Some(batches) = &mut self.narrow
         {
             let batches = &mut **batches;
@@ -292,7 +305,7 @@ struct Prepare<'a> {
     contacts: &'a mut Contacts,
     crew: &'a Crew,
     context: &'a Context<'a>,
-    colours: Range<usize>,
+    /// Whether those that have a colour; those that have none otherwise.
     wide: bool,
 }
 
@@ -301,16 +314,19 @@ impl Kernel for Prepare<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) {
-        let Contacts { order, starts, keys, wide, narrow, .. } = self.contacts;
+        let Contacts { order, starts, keys, parts, wide, narrow, .. } = self.contacts;
         let place = if self.wide { wide } else { narrow };
         if !place.as_ref().is_some_and(|b| b.is::<Batches<L>>()) {
             *place = Some(Box::new(Batches::<L>::default()));
         }
         let Some(batches) = place.as_mut().and_then(|b| b.downcast_mut::<Batches<L>>()) else { return };
-        let Batches { list, spans, bodies, colours } = batches;
+        let Batches { list, spans, bodies, ends, groups } = batches;
         spans.clear();
-        colours.fill(0..0);
-        for colour in self.colours {
+        ends.clear();
+        groups.clear();
+        let (parts, overflow) = (*parts, starts.len() - 2);
+        let colours = if self.wide { 0..overflow } else { overflow..overflow + 1 };
+        for colour in colours {
             let first_batch = spans.len();
             let (mut first, end) = (starts[colour], starts[colour + 1]);
             let manifolds = &order[first as usize..end as usize];
@@ -322,7 +338,23 @@ impl Kernel for Prepare<'_> {
                 spans.push(Span { first, end: stop, special });
                 first = stop;
             }
-            colours[colour] = first_batch..spans.len();
+            let section = colour / COLOURS;
+            if section < parts {
+                // Parts are one group: one after the other within each, and side by side.
+                if colour % COLOURS == COLOURS - 1 {
+                    ends.push(spans.len());
+                }
+                if colour + 1 == parts * COLOURS {
+                    groups.push(0..ends.len());
+                }
+            } else if spans.len() > first_batch {
+                // A colour between parts is shared out in lots.
+                let start = ends.len();
+                let size = lot_size::<L>(spans.len() - first_batch, self.crew);
+                ends.extend((first_batch + size..spans.len()).step_by(size));
+                ends.push(spans.len());
+                groups.push(start..ends.len());
+            }
         }
         if spans.len() > list.capacity() {
             // What they hold is of the step before: no need to have the old ones beside the new. Doubling would leave up to half of the
@@ -331,7 +363,7 @@ impl Kernel for Prepare<'_> {
             list.reserve_exact((spans.len() + spans.len() / 8).max(32));
         }
         list.resize_with(spans.len(), Batch::blank);
-        let rows = bodies.begin(colours.iter().cloned(), spans.len());
+        let rows = bodies.begin(groups.iter().map(|group| ends[group.clone()].iter().copied()), spans.len());
         let size = lot_size::<L>(spans.len(), self.crew);
         let (spans, keys, order) = (&*spans, &*keys, &*order);
         self.crew.each((chunks(list, size), chunks(rows, size)), |lot, (batches, rows)| {
@@ -356,5 +388,5 @@ const LEAST_SHARED: usize = 96;
 const LEAST_TASK: usize = 32;
 
 fn is_special(sort: u16) -> bool {
-    usize::from(sort) % KINDS >= 4
+    usize::from(sort) % KINDS >= MANIFOLD_POINTS
 }

@@ -2,7 +2,7 @@
 
 use super::extra::Extra;
 use super::vector::{Motion, load3};
-use super::{Batch, Batches, Pass, lot_size, restitution};
+use super::{Batch, Batches, Pass, restitution};
 use crate::solve::substep::bodies::SolverBodies;
 use core::any::Any;
 use ferrode_math::Vector3;
@@ -36,17 +36,20 @@ impl Kernel for Sweep<'_> {
         let Some(batches) = self.batches.downcast_mut::<Batches<L>>() else { return };
         let SolverBodies { velocities, deltas, .. } = self.bodies;
         let (pass, h, elapsed, deltas) = (self.pass, self.h, self.elapsed, deltas.as_slice());
-        for (colour, range) in batches.colours.iter().enumerate().filter(|(_, range)| !range.is_empty()) {
-            let list = &mut batches.list[range.clone()];
-            let size = lot_size::<L>(list.len(), self.crew);
-            batches.bodies.sweep(self.crew, colour, size, list, velocities, |lot| {
+        let mut rest = batches.list.as_mut_slice();
+        let mut first = 0;
+        for (number, group) in batches.groups.iter().enumerate() {
+            let end = batches.ends[group.clone()].last().copied().unwrap_or(first);
+            let (list, after) = rest.split_at_mut(end - first);
+            (rest, first) = (after, end);
+            batches.bodies.sweep(self.crew, number, list, velocities, |lot| {
                 L::enter(SweepLot { lot, pass, deltas, h, elapsed });
             });
         }
     }
 }
 
-/// A pass over some batches of a colour.
+/// A pass over some batches.
 struct SweepLot<'a, L: Lanes> {
     lot: Lot<'a, L, Batch<L>>,
     pass: Pass,
