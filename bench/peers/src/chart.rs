@@ -4,13 +4,17 @@ use crate::report::{fastest_peer, groups};
 use crate::run::Run;
 use plotters::prelude::*;
 
-const COLOURS: [RGBColor; 6] = [
+const COLOURS: [RGBColor; 10] = [
     RGBColor(200, 80, 30),
     RGBColor(60, 110, 180),
     RGBColor(90, 160, 90),
     RGBColor(150, 190, 150),
     RGBColor(140, 140, 140),
     RGBColor(190, 160, 60),
+    RGBColor(140, 90, 170),
+    RGBColor(60, 160, 170),
+    RGBColor(200, 110, 150),
+    RGBColor(110, 80, 60),
 ];
 /// Longer bars are cut.
 const LONGEST: f64 = 5.0;
@@ -28,7 +32,7 @@ pub fn svg(runs: &[Run]) -> Result<String, String> {
     }
     let groups = groups(runs);
     let (row, bar) = (names.len() as i32 * 12 + 14, 12);
-    let (width, left, top) = (900, 300, 50);
+    let (width, left, top) = (1000, 300, 50);
     let height = top + row * groups.len() as i32 + 20;
     let mut svg = String::new();
     {
@@ -39,7 +43,7 @@ pub fn svg(runs: &[Run]) -> Result<String, String> {
             let title = "Time of a step over that of the fastest peer (shorter is better)";
             area.draw(&Text::new(title, (10, 8), text(16)))?;
             for (i, name) in names.iter().enumerate() {
-                let x = 10 + 120 * i as i32;
+                let x = 10 + 980 / names.len() as i32 * i as i32;
                 area.draw(&Rectangle::new([(x, 30), (x + 10, 40)], COLOURS[i % COLOURS.len()].filled()))?;
                 area.draw(&Text::new((*name).to_owned(), (x + 14, 28), text(13)))?;
             }
@@ -51,7 +55,7 @@ pub fn svg(runs: &[Run]) -> Result<String, String> {
                     if first.threads == 1 { String::new() } else { format!(", {} threads", first.threads) };
                 area.draw(&Text::new(format!("{}{threads}", first.scene), (10, y + row / 2 - 12), text(12)))?;
                 let best = fastest_peer(group).unwrap_or(1.0);
-                for (k, run) in group.iter().enumerate() {
+                for (k, run) in group.iter().filter(|run| run.refused.is_none()).enumerate() {
                     let colour = names.iter().position(|n| *n == run.engine).unwrap_or(0);
                     let ratio = run.time() / best;
                     let (y, length) = (y + bar * k as i32, (ratio.min(LONGEST) * scale) as i32);

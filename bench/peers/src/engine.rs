@@ -19,6 +19,8 @@ pub struct Choice {
     pub name: &'static str,
     /// Whether it can use several threads.
     pub threads: bool,
+    /// Why it does not run a scene, if so.
+    pub refuses: fn(&Scene) -> Option<String>,
     /// Builds a scene in it.
     pub build: fn(&Scene, usize) -> Box<dyn Engine>,
 }

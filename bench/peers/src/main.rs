@@ -73,6 +73,9 @@ fn go() -> Result<(), String> {
         let [file] = files.as_slice() else { return Err("one run takes one scene".into()) };
         let scene = scene::Scene::read(file)?;
         let threads = words.threads.first().copied().unwrap_or(1);
+        if let Some(why) = (choice.refuses)(&scene) {
+            return Err(format!("{}: {why}", choice.name));
+        }
         let run = run::measure(&scene, &choice, threads, steps);
         println!("{}", serde_json::to_string(&run).map_err(|e| e.to_string())?);
         return Ok(());

@@ -5,7 +5,7 @@ use ferrode_collide::{
     Capsule, CollideOptions, Colliders, Cuboid, Cylinder, Geom, Shape, ShapeError, SpaceKind, Sphere, TriMesh,
 };
 use ferrode_math::{Pose, Vec3};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Lengths in metres, angles in radians, speeds in m/s.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
@@ -15,8 +15,10 @@ pub struct Quality {
     /// The mean.
     pub mean_depth: f64,
     /// How far a joint's two anchors lie apart at most.
+    #[serde(deserialize_with = "number_or_infinity")]
     pub joint_error: f64,
     /// How far the two axes of a hinge point apart at most.
+    #[serde(deserialize_with = "number_or_infinity")]
     pub axis_error: f64,
     /// How far a body is from where it began, at most.
     pub moved: f64,
@@ -126,6 +128,11 @@ impl Quality {
             self.mean_depth = sum / f64::from(pairs.max(1));
         }
     }
+}
+
+/// JSON has no infinity, and null in its place.
+fn number_or_infinity<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
 }
 
 /// The larger; what is no number counts as infinite.

@@ -8,9 +8,10 @@ pub fn groups(runs: &[Run]) -> Vec<&[Run]> {
     runs.chunk_by(|a, b| a.scene == b.scene && a.threads == b.threads).collect()
 }
 
-/// The fastest peer of a group.
+/// The fastest peer of a group, among those that lost nothing.
 pub fn fastest_peer(group: &[Run]) -> Option<f64> {
-    group.iter().filter(|r| r.engine != "ferrode").map(Run::time).min_by(f64::total_cmp)
+    let peers = group.iter().filter(|r| r.engine != "ferrode" && r.refused.is_none() && r.quality.lost == 0);
+    peers.map(Run::time).min_by(f64::total_cmp)
 }
 
 fn millimetres(metres: f64) -> String {
@@ -26,7 +27,8 @@ pub fn text(runs: &[Run]) -> String {
     text += "From `cargo run --release -p ferrode-bench-peers`, steps of 1/60 s. Times are means over the timed steps of the median run, \
              as processor time on one thread and time of the clock on two; depths, joint errors and speeds are those of the last \
              step, measured from the bodies' poses by one program for all engines. Memory is the peak over the program without a world.\n\n";
-    let mut abouts: Vec<&str> = runs.iter().map(|r| r.about.as_str()).collect();
+    let mut abouts: Vec<&str> =
+        runs.iter().filter(|r| r.refused.is_none()).map(|r| r.about.as_str()).collect();
     abouts.sort_unstable();
     abouts.dedup();
     for about in abouts {
@@ -44,6 +46,10 @@ pub fn text(runs: &[Run]) -> String {
         );
         let best = fastest_peer(group);
         for run in group {
+            if let Some(why) = &run.refused {
+                let _ = writeln!(text, "| {} | not run: {why} | | | | | | | | | |", run.engine);
+                continue;
+            }
             let q = &run.quality;
             let _ = writeln!(
                 text,

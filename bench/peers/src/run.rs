@@ -29,6 +29,8 @@ pub struct Run {
     pub memory: f64,
     /// Of the last step.
     pub quality: Quality,
+    /// Why there was no run, if there was none.
+    pub refused: Option<String>,
 }
 
 fn processor_seconds() -> f64 {
@@ -74,6 +76,7 @@ pub fn measure(scene: &Scene, choice: &Choice, threads: usize, steps: usize) -> 
         cpu: cpu * scale,
         memory,
         quality: Quality::judge(scene, &before, &after),
+        refused: None,
     }
 }
 
@@ -82,9 +85,14 @@ pub fn take_turns(file: &Path, scene: &Scene, words: &str, threads: usize, reps:
     let wanted = |name: &str| words.split(',').any(|word| name.contains(word));
     let choices: Vec<Choice> =
         engines::all().into_iter().filter(|c| wanted(c.name) && (threads == 1 || c.threads)).collect();
-    let mut runs: Vec<Vec<Run>> = choices.iter().map(|_| Vec::new()).collect();
+    let refused = |choice: &Choice| Some(Run::refused(scene, choice, threads, (choice.refuses)(scene)?));
+    let mut runs: Vec<Vec<Run>> =
+        choices.iter().map(|choice| refused(choice).into_iter().collect()).collect();
     for turn in 0..reps {
         for (choice, runs) in choices.iter().zip(&mut runs) {
+            if runs.iter().any(|run| run.refused.is_some()) {
+                continue;
+            }
             match single(file, choice.name, threads) {
                 Ok(run) => runs.push(run),
                 Err(error) => eprintln!("{} in {}, turn {turn}: {error}", scene.name, choice.name),
@@ -113,6 +121,21 @@ fn single(file: &Path, engine: &str, threads: usize) -> Result<Run, String> {
 }
 
 impl Run {
+    /// In place of a run that an engine refuses.
+    fn refused(scene: &Scene, choice: &Choice, threads: usize, why: String) -> Self {
+        Self {
+            scene: scene.name.clone(),
+            engine: choice.name.into(),
+            about: String::new(),
+            threads,
+            wall: f64::INFINITY,
+            cpu: f64::INFINITY,
+            memory: f64::NAN,
+            quality: Quality::default(),
+            refused: Some(why),
+        }
+    }
+
     /// Milliseconds a step: processor time on one thread, which other work on the machine does not lengthen, and time of
     /// the clock on several.
     pub fn time(&self) -> f64 {

@@ -1,6 +1,6 @@
-//! Box3D through its C interface. This file and `ode.rs` are not safe Rust.
+//! Box3D through its C interface. This file is not safe Rust.
 
-use super::frame_along;
+use super::parts::along_z;
 use crate::engine::Engine;
 use crate::scene::{Form, Joint, Link, STEP, Scene, Solid};
 use box3d_sys as sys;
@@ -65,7 +65,7 @@ impl Box3d {
                 }
                 Link::Hinge { axis, stops, brake } => {
                     let mut def = sys::b3DefaultRevoluteJointDef();
-                    place(&mut def.base, frame_along(axis));
+                    place(&mut def.base, along_z(axis));
                     if let Some((low, high)) = stops {
                         // Box3D turns the second body against the first.
                         (def.enableLimit, def.lowerAngle, def.upperAngle) = (true, -high as f32, -low as f32);

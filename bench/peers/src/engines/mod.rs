@@ -2,39 +2,45 @@
 
 #[cfg(feature = "box3d")]
 mod box3d;
+#[cfg(feature = "bullet")]
+mod bullet;
+#[cfg(test)]
+mod checks;
 mod ferrode;
+#[cfg(feature = "jolt")]
+mod jolt;
+#[cfg(feature = "mujoco")]
+mod mujoco;
 mod ode;
+#[cfg(any(test, feature = "box3d", feature = "bullet", feature = "jolt", feature = "mujoco"))]
+mod parts;
 mod rapier;
 
-use crate::engine::Choice;
-use ferrode_math::{Quat, Vec3};
+use crate::engine::{Choice, Engine};
+use crate::scene::Scene;
+
+/// An engine that takes every scene.
+fn choice(name: &'static str, threads: bool, build: fn(&Scene, usize) -> Box<dyn Engine>) -> Choice {
+    Choice { name, threads, refuses: |_| None, build }
+}
 
 /// All engines that were built in.
 pub fn all() -> Vec<Choice> {
     vec![
-        Choice { name: "ferrode", threads: true, build: |s, t| Box::new(ferrode::Ferrode::new(s, t)) },
+        choice("ferrode", true, |s, t| Box::new(ferrode::Ferrode::new(s, t))),
         #[cfg(feature = "box3d")]
-        Choice { name: "box3d", threads: true, build: |s, t| Box::new(box3d::Box3d::new(s, t)) },
+        choice("box3d", true, |s, t| Box::new(box3d::Box3d::new(s, t))),
+        choice("rapier f32", true, |s, t| Box::new(rapier::single::Rapier::new(s, t))),
+        choice("rapier f64", true, |s, t| Box::new(rapier::double::Rapier::new(s, t))),
+        #[cfg(feature = "bullet")]
+        choice("bullet", false, |s, _| Box::new(bullet::Bullet::new(s))),
+        #[cfg(feature = "jolt")]
+        choice("jolt", true, |s, t| Box::new(jolt::Jolt::new(s, t))),
+        #[cfg(feature = "mujoco")]
         Choice {
-            name: "rapier f32",
-            threads: true,
-            build: |s, t| Box::new(rapier::single::Rapier::new(s, t)),
+            refuses: mujoco::refuses,
+            ..choice("mujoco", false, |s, _| Box::new(mujoco::Mujoco::new(s)))
         },
-        Choice {
-            name: "rapier f64",
-            threads: true,
-            build: |s, t| Box::new(rapier::double::Rapier::new(s, t)),
-        },
-        Choice { name: "libode", threads: false, build: |s, _| Box::new(ode::Ode::new(s)) },
+        choice("libode", false, |s, _| Box::new(ode::Ode::new(s))),
     ]
-}
-
-/// A rotation whose z axis lies along a unit vector, for engines whose hinges turn about z.
-fn frame_along(z: Vec3) -> Quat {
-    let (from, turn) = (Vec3::Z, Vec3::Z.cross(z));
-    match turn.normalized() {
-        Some(axis) => Quat::from_axis_angle(axis, ferrode_math::real::atan2(turn.length(), from.dot(z))),
-        None if z.z > 0.0 => Quat::IDENTITY,
-        None => Quat::from_axis_angle(Vec3::X, core::f64::consts::PI),
-    }
 }

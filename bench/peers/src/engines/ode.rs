@@ -1,5 +1,5 @@
 //! Installed libode (double precision) with `dWorldQuickStep`, contact joints and a hash space: as its manual has it. This
-//! file and `box3d.rs` are not safe Rust.
+//! file is not safe Rust.
 
 use crate::engine::Engine;
 use crate::scene::{Form, Link, STEP, Scene};
@@ -90,6 +90,7 @@ unsafe extern "C" {
     fn dGeomSetBody(geom: Id, body: Id);
     fn dGeomGetBody(geom: Id) -> Id;
     fn dGeomSetPosition(geom: Id, x: f64, y: f64, z: f64);
+    fn dGeomSetQuaternion(geom: Id, q: *const f64);
     fn dGeomSetCategoryBits(geom: Id, bits: c_ulong);
     fn dGeomSetCollideBits(geom: Id, bits: c_ulong);
     fn dCreateBox(space: Id, x: f64, y: f64, z: f64) -> Id;
@@ -182,6 +183,7 @@ impl Ode {
                 }
                 if solid.density.is_none() {
                     dGeomSetPosition(geom, p.x, p.y, p.z);
+                    dGeomSetQuaternion(geom, q.as_ptr());
                     self.solids.push(Err(solid.pose));
                     continue;
                 }
