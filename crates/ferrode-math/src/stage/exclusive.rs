@@ -1,6 +1,6 @@
 //! Records that tasks reach by index, no two of them the same.
 
-use super::{Crew, cut};
+use super::{Crew, chunks, cut};
 use crate::simd::{Lanes, NO_RECORD, Record};
 use core::cell::Cell;
 use core::ops::Range;
@@ -187,6 +187,36 @@ impl<L: Lanes> Exclusive<L> {
     }
 }
 
+impl<L: Lanes> Exclusive<L> {
+    /// Calls `work` with each of `owners`, side by side: one for each part of a group, with the records of several lists that it owns: those that
+    /// the part's rows touch.
+    pub fn lend<T: Send, const N: usize>(
+        &self,
+        crew: &Crew,
+        group: usize,
+        owners: &mut [T],
+        lists: [&mut [Record]; N],
+        work: impl Fn(&mut T, Lent<'_, L, N>) + Sync,
+    ) {
+        let Some(group) = self.groups.get(group) else { return };
+        let lists = lists.map(|list| Cell::from_mut(list).as_slice_of_cells());
+        let rows = |part: usize| self.rows.get(group.items(&self.ends, part)).unwrap_or_default();
+        if !group.apart.load(Ordering::Relaxed) || crew.threads() == 1 {
+            for (part, owner) in owners.iter_mut().enumerate().take(group.parts.len()) {
+                work(owner, Lent { rows: rows(part), lists });
+            }
+            return;
+        }
+        let shared = lists.map(|list| Shared { start: list.as_ptr(), len: list.len() });
+        let count = owners.len().min(group.parts.len());
+        crew.each(chunks(&mut owners[..count], 1), |part, owner| {
+            // SAFETY: as in `sweep`; the parts' records were found to be different ones in any list, for it is their numbers that differ.
+            let lists = shared.each_ref().map(|list| unsafe { list.cells() });
+            work(&mut owner[0], Lent { rows: rows(part), lists });
+        });
+    }
+}
+
 impl Group {
     /// Whether there is something to share out.
     fn is_shared(&self) -> bool {
@@ -227,6 +257,32 @@ impl Shared {
     unsafe fn cells<'a>(&self) -> &'a [Cell<Record>] {
         // SAFETY: the caller's promise.
         unsafe { core::slice::from_raw_parts(self.start, self.len) }
+    }
+}
+
+/// The records of `N` lists that a part's rows touch, numbered in the order of the rows: two per row.
+pub struct Lent<'a, L: Lanes, const N: usize> {
+    rows: &'a [[L::Index; 2]],
+    lists: [&'a [Cell<Record>]; N],
+}
+
+impl<L: Lanes, const N: usize> Lent<'_, L, N> {
+    /// The numbers of each lane's record with a number, in one of the lists.
+    ///
+    /// # Panics
+    /// If there are fewer records or lists.
+    #[inline(always)]
+    pub fn gather(&self, list: usize, number: usize) -> [L; 8] {
+        L::gather(self.lists[list], &self.rows[number / 2][number % 2])
+    }
+
+    /// Writes them.
+    ///
+    /// # Panics
+    /// If there are fewer records or lists.
+    #[inline(always)]
+    pub fn scatter(&self, list: usize, number: usize, numbers: [L; 8]) {
+        L::scatter(self.lists[list], &self.rows[number / 2][number % 2], numbers);
     }
 }
 

@@ -32,7 +32,7 @@ mod exclusive;
 mod pieces;
 
 pub use crew::Crew;
-pub use exclusive::{Exclusive, Lot, Touch};
+pub use exclusive::{Exclusive, Lent, Lot, Touch};
 pub use pieces::{Chunks, Cut, Pieces, chunks, cut};
 
 #[cfg(test)]

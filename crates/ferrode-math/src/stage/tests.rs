@@ -1,4 +1,4 @@
-use super::{Crew, Exclusive, Lot, Pieces, chunks, cut};
+use super::{Crew, Exclusive, Lent, Lot, Pieces, chunks, cut};
 use crate::simd::{Kernel, Lanes, Level, NO_RECORD, Record, Work, dispatch_at};
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -191,4 +191,75 @@ fn cuts_that_overlap_are_refused() {
     let crew = Crew::new(2);
     crew.each(cut(&mut list, 5, &[5, 8, 14]), |i, piece| piece.fill(i as u8 + 1));
     assert_eq!(list, [2, 2, 2, 3, 3, 3, 3, 3, 3, 0]);
+}
+
+/// Gives each owner the sum of its records, and adds one to these in both lists; tells how many owners were served by tasks of the crew.
+struct Serve<'a> {
+    crew: &'a Crew,
+    rows: &'a [[u32; 2]],
+    ends: &'a [usize],
+    owners: &'a mut [f32],
+    lists: [&'a mut [Record]; 2],
+}
+
+struct ServeOne<'a, L: Lanes>(&'a mut f32, Lent<'a, L, 2>, usize);
+
+impl<L: Lanes> Work<L> for ServeOne<'_, L> {
+    #[inline(always)]
+    fn run(self) {
+        let Self(sum, lent, records) = self;
+        for i in 0..records {
+            for list in 0..2 {
+                let numbers = lent.gather(list, i);
+                *sum += numbers[0].store().as_ref()[0];
+                lent.scatter(list, i, numbers.map(|x| x + L::ONE));
+            }
+        }
+    }
+}
+
+impl Kernel for Serve<'_> {
+    type Out = u32;
+
+    fn run<L: Lanes>(self) -> u32 {
+        let mut lists = Exclusive::<L>::default();
+        for (row, pair) in lists.begin([self.ends.to_vec()], self.rows.len()).iter_mut().zip(self.rows) {
+            for (index, record) in row.iter_mut().zip(pair) {
+                index.as_mut().fill(NO_RECORD);
+                index.as_mut()[0] = *record;
+            }
+        }
+        lists.verify(self.crew, self.lists[0].len());
+        let served = AtomicU32::new(0);
+        lists.lend(self.crew, 0, self.owners, self.lists, |owner, lent| {
+            served.fetch_add(u32::from(self.crew.is_busy()), Ordering::Relaxed);
+            L::enter(ServeOne(owner, lent, 4));
+        });
+        served.into_inner()
+    }
+}
+
+#[test]
+fn owners_are_lent_their_records_alone() {
+    // Two rows each, of records of their own; or the last owner has one of the first's.
+    for (shares, last) in [(false, 31), (true, 2)] {
+        let rows: Vec<[u32; 2]> = (0..16).map(|i| [2 * i, if i == 15 { last } else { 2 * i + 1 }]).collect();
+        let ends: Vec<usize> = (1..=8).map(|i| 2 * i).collect();
+        let run = |threads, level| {
+            let (mut owners, mut one) = ([0.0; 8], [Record::ZERO; 32]);
+            one.iter_mut().enumerate().for_each(|(i, r)| r.0 = [i as f32; 8]);
+            let mut two = one;
+            let (crew, lists) = (Crew::new(threads), [&mut one[..], &mut two[..]]);
+            let serve = Serve { crew: &crew, rows: &rows, ends: &ends, owners: &mut owners, lists };
+            (dispatch_at(level, serve), owners, one.map(|r| r.0), two.map(|r| r.0))
+        };
+        let alone = run(1, Level::Scalar);
+        assert_eq!(alone.0, 0);
+        assert_eq!(alone.1[1], 2.0 * (4.0 + 5.0 + 6.0 + 7.0));
+        for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+            let together = run(3, level);
+            assert_eq!(together.0, if shares { 0 } else { 8 }, "{level:?}");
+            assert!((together.1, together.2, together.3) == (alone.1, alone.2, alone.3), "{level:?}");
+        }
+    }
 }

@@ -8,8 +8,14 @@ use super::shape::{JointEnds, Shape};
 use super::triple::{over, scaled, without_trifles};
 use crate::arena::NIL;
 use crate::solve::substep::joints::{JointConstraint, JointRow, Joints};
-use core::cell::Cell;
-use ferrode_math::simd::{Lanes, Mask, NO_RECORD, Record};
+use ferrode_math::simd::{Lanes, Mask, NO_RECORD};
+use ferrode_math::stage::Lent;
+
+/// The velocities, displacements and scales of a batch's bodies, by their numbers in its list.
+pub(super) type BodyRecords<'a, L> = Lent<'a, L, 3>;
+pub(super) const VELOCITIES: usize = 0;
+pub(super) const DELTAS: usize = 1;
+pub(super) const SCALES: usize = 2;
 
 /// Of scaled velocities: parts of 10⁻⁷ of it are rounded away.
 const VELOCITY_TRIFLE: f32 = 1e-10;
@@ -149,13 +155,12 @@ impl<L: Lanes> Batch<L> {
         shape: &Shape,
         joints: &Joints,
         (h, alone): (f32, bool),
-        scales: &[Cell<Record>],
-        velocities: &[Cell<Record>],
+        records: &BodyRecords<'_, L>,
     ) {
         (self.alone, self.ahead, self.gathered) = (alone, false, false);
         self.scales.clear();
-        for index in &self.bodies {
-            self.scales.push(L::gather(scales, index));
+        for i in 0..self.bodies.len() {
+            self.scales.push(records.gather(SCALES, i));
         }
         self.scales.push([L::ZERO; 8]);
         self.yields.clear();
@@ -168,30 +173,23 @@ impl<L: Lanes> Batch<L> {
         for s in &self.scales {
             self.unscales.push([over(L::ONE, s[1]), over(L::ONE, s[3]), over(L::ONE, s[6])]);
         }
-        self.gather(velocities);
+        self.gather(records);
         self.push_all(L::ONE);
-        self.give_back(velocities);
+        self.give_back(records);
     }
 
     /// Takes the rows to where the bodies have moved; and if they are to `act`, their impulses with them.
     #[inline(always)]
-    pub fn advance(
-        &mut self,
-        shape: &Shape,
-        joints: &Joints,
-        act: bool,
-        velocities: &[Cell<Record>],
-        deltas: &[Cell<Record>],
-    ) {
+    pub fn advance(&mut self, shape: &Shape, joints: &Joints, act: bool, records: &BodyRecords<'_, L>) {
         let mixed = self.starts.len() < self.list.len();
         if act {
-            self.gather(velocities);
+            self.gather(records);
             if mixed {
                 self.push_all(-L::ONE);
             }
         }
-        for (i, index) in self.bodies.iter().enumerate() {
-            let [a, b, c, d, e, f, ..] = L::gather(deltas, index);
+        for i in 0..self.bodies.len() {
+            let [a, b, c, d, e, f, ..] = records.gather(DELTAS, i);
             let inverse = self.yields[i][1];
             let delta = [a, b, c, d * inverse, e * inverse, f * inverse];
             self.motions[i] = Motion::new(&delta, &self.scales[i]);
@@ -205,7 +203,7 @@ impl<L: Lanes> Batch<L> {
             self.follow(joints.rates, act);
         }
         if act {
-            self.give_back(velocities);
+            self.give_back(records);
         }
         self.stale = true;
     }
@@ -357,11 +355,11 @@ impl<L: Lanes> Batch<L> {
     }
 
     #[inline(always)]
-    pub fn gather(&mut self, velocities: &[Cell<Record>]) {
+    pub fn gather(&mut self, records: &BodyRecords<'_, L>) {
         self.velocities.clear();
         let unit = L::splat(VELOCITY_TRIFLE);
-        for (index, [_, inverse]) in self.bodies.iter().zip(&self.yields) {
-            let [a, b, c, d, e, f, ..] = L::gather(velocities, index);
+        for (i, [_, inverse]) in self.yields[..self.bodies.len()].iter().enumerate() {
+            let [a, b, c, d, e, f, ..] = records.gather(VELOCITIES, i);
             let [a, b, c] = without_trifles(&[a, b, c], unit);
             let [d, e, f] = without_trifles(&[d * *inverse, e * *inverse, f * *inverse], unit);
             self.velocities.push([a, b, c, d, e, f]);
@@ -370,21 +368,20 @@ impl<L: Lanes> Batch<L> {
     }
 
     #[inline(always)]
-    pub fn scatter(&self, velocities: &[Cell<Record>]) {
-        for ((index, [a, b, c, d, e, f]), [root, _]) in
-            self.bodies.iter().zip(&self.velocities).zip(&self.yields)
-        {
+    pub fn scatter(&self, records: &BodyRecords<'_, L>) {
+        let moving = self.velocities.iter().zip(&self.yields).take(self.bodies.len());
+        for (i, ([a, b, c, d, e, f], [root, _])) in moving.enumerate() {
             let numbers = [*a, *b, *c, *d * *root, *e * *root, *f * *root, L::ZERO, L::ZERO];
-            L::scatter(velocities, index, numbers);
+            records.scatter(VELOCITIES, i, numbers);
         }
     }
 
     /// Lets others see the velocities before the next sweep, if there are any whom they concern.
     #[inline(always)]
-    fn give_back(&mut self, velocities: &[Cell<Record>]) {
+    fn give_back(&mut self, records: &BodyRecords<'_, L>) {
         self.gathered = self.alone;
         if !self.alone {
-            self.scatter(velocities);
+            self.scatter(records);
         }
     }
 

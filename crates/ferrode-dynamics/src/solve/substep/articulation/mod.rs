@@ -21,12 +21,12 @@ use super::bodies::SolverBodies;
 use super::joints::Joints;
 use super::sleep::Sets;
 use crate::arena::NIL;
-use batch::Batch;
+use batch::{Batch, BodyRecords};
 pub(super) use carry::{CarriedJoint, Rates};
 use core::any::Any;
-use core::cell::Cell;
 use core::ops::Range;
-use ferrode_math::simd::{Kernel, Lanes, Level, dispatch_few};
+use ferrode_math::simd::{Kernel, Lanes, Level, NO_RECORD, Work, dispatch_few};
+use ferrode_math::stage::{Crew, Exclusive};
 use shape::{JointEnds, Shape};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -35,6 +35,8 @@ pub(super) use sweep::Mode;
 /// Products of blocks per joint, on average, up to which joints that nothing is said of are solved exactly. A chain takes three;
 /// this is a band of six joints.
 const MOST_PRODUCTS: f64 = 24.0;
+/// Joints, in lanes or alone, that are worth sharing out among threads: some microseconds' worth.
+const MANY_JOINTS: usize = 30;
 /// Shapes that are kept though no articulation had them in the last step.
 const SPARE_SHAPES: usize = 64;
 
@@ -47,7 +49,32 @@ struct Known {
 
 /// Batches of one kind of lanes.
 #[derive(Debug)]
-struct Batches<L: Lanes>(Vec<Batch<L>>);
+struct Batches<L: Lanes> {
+    list: Vec<Batch<L>>,
+    /// The bodies of each: one group, a part for each batch.
+    bodies: Exclusive<L>,
+    /// Whether there are joints enough to be shared out.
+    many: bool,
+}
+
+impl<L: Lanes> Batches<L> {
+    fn new(list: Vec<Batch<L>>, joints: usize) -> Self {
+        let mut bodies = Exclusive::<L>::default();
+        let rows = |batch: &Batch<L>| batch.bodies.len().div_ceil(2);
+        let mut end = 0;
+        let ends = list.iter().map(|batch| {
+            end += rows(batch);
+            end
+        });
+        let places = bodies.begin([ends.collect::<Vec<_>>()], list.iter().map(rows).sum());
+        let pairs = list.iter().flat_map(|batch| batch.bodies.chunks(2));
+        for (row, pair) in places.iter_mut().zip(pairs) {
+            row[1].as_mut().fill(NO_RECORD);
+            row[..pair.len()].copy_from_slice(pair);
+        }
+        Self { list, bodies, many: joints >= MANY_JOINTS }
+    }
+}
 
 /// The articulations of a step.
 #[derive(Debug, Default)]
@@ -169,7 +196,7 @@ impl Articulations {
                 at - group.len()..at
             }));
         }
-        self.pass(level, Task::Arrange, bodies);
+        self.pass(level, &Crew::default(), Task::Arrange, bodies);
         if self.known.len() > self.shapes.len() + SPARE_SHAPES {
             let step = self.step;
             self.known.retain(|_, known| known.used == step);
@@ -246,12 +273,12 @@ impl Articulations {
     }
 
     /// Does something with all of them.
-    pub fn pass(&mut self, level: Level, mut task: Task<'_>, bodies: &mut SolverBodies) {
+    pub fn pass(&mut self, level: Level, crew: &Crew, mut task: Task<'_>, bodies: &mut SolverBodies) {
         if self.order.is_empty() {
             return;
         }
         for (level, wide) in [(level, true), (Level::Scalar, false)] {
-            dispatch_few(level, Run { articulations: self, bodies, task: &mut task, wide });
+            dispatch_few(level, Run { articulations: self, crew, bodies, task: &mut task, wide });
         }
     }
 }
@@ -271,6 +298,7 @@ impl Kernel for CountLanes {
 /// A task with lanes of one kind.
 struct Run<'a, 'p> {
     articulations: &'a mut Articulations,
+    crew: &'a Crew,
     bodies: &'a mut SolverBodies,
     task: &'a mut Task<'p>,
     wide: bool,
@@ -286,13 +314,15 @@ impl Kernel for Run<'_, '_> {
         let place = if self.wide { wide } else { narrow };
         if let Task::Arrange = self.task {
             let known = place.take().and_then(|b| b.downcast::<Batches<L>>().ok());
-            let mut spare = known.map_or(Vec::new(), |b| b.0).into_iter();
+            let mut spare = known.map_or(Vec::new(), |b| b.list).into_iter();
+            let mut joints = 0;
             // One that stands alone takes one lane.
             let mine = groups.iter().filter(|group| self.wide == (group.len() > 1));
             let list: Vec<_> = mine
                 .map(|group| {
                     let number = order[group.start].0;
                     let shape = &shapes[number as usize];
+                    joints += shape.order.len();
                     let mut batch = spare.next().unwrap_or_else(Batch::<L>::new);
                     batch.reset(number, shape);
                     for (_, member) in &order[group.clone()] {
@@ -302,25 +332,62 @@ impl Kernel for Run<'_, '_> {
                     batch
                 })
                 .collect();
-            *place = Some(Box::new(Batches(list)));
+            *place = Some(Box::new(Batches::new(list, joints)));
             return;
         }
-        let Some(Batches(list)) = place.as_mut().and_then(|b| b.downcast_mut::<Batches<L>>()) else { return };
-        let velocities = Cell::from_mut(self.bodies.velocities.as_mut_slice()).as_slice_of_cells();
-        let deltas = Cell::from_mut(self.bodies.deltas.as_mut_slice()).as_slice_of_cells();
-        let scales = Cell::from_mut(self.bodies.scales.as_mut_slice()).as_slice_of_cells();
-        for batch in list {
-            let shape = &shapes[batch.shape as usize];
-            match self.task {
-                Task::Arrange => {}
-                Task::Begin(joints, h) => {
-                    let alone = !in_company.get(batch.shape as usize).copied().unwrap_or(true);
-                    batch.begin(shape, joints, (*h, alone), scales, velocities);
+        let Some(batches) = place.as_mut().and_then(|b| b.downcast_mut::<Batches<L>>()) else { return };
+        let act = match self.task {
+            Task::Arrange => return,
+            Task::Store(joints) => {
+                for batch in &mut batches.list {
+                    batch.store(&joints.constraints, &mut joints.rows, &mut joints.kept);
                 }
-                Task::Advance(joints, act) => batch.advance(shape, joints, *act, velocities, deltas),
-                Task::Solve(mode) => batch.sweep(*mode, velocities, deltas),
-                Task::Store(joints) => batch.store(&joints.constraints, &mut joints.rows, &mut joints.kept),
+                return;
             }
+            Task::Begin(joints, h) => {
+                batches.bodies.verify(self.crew, self.bodies.len());
+                Act::Begin(joints, *h)
+            }
+            Task::Advance(joints, act) => Act::Advance(joints, *act),
+            Task::Solve(mode) => Act::Solve(*mode),
+        };
+        let alone = Crew::default();
+        let crew = if batches.many { self.crew } else { &alone };
+        let SolverBodies { velocities, deltas, scales, .. } = self.bodies;
+        let (shapes, in_company) = (&*shapes, &*in_company);
+        batches.bodies.lend(crew, 0, &mut batches.list, [velocities, deltas, scales], |batch, records| {
+            let shape = &shapes[batch.shape as usize];
+            let alone = !in_company.get(batch.shape as usize).copied().unwrap_or(true);
+            L::enter(OnBatch { batch, records, shape, alone, act });
+        });
+    }
+}
+
+/// What is done with each batch.
+#[derive(Clone, Copy)]
+enum Act<'a> {
+    Begin(&'a Joints, f32),
+    Advance(&'a Joints, bool),
+    Solve(Mode),
+}
+
+struct OnBatch<'a, L: Lanes> {
+    batch: &'a mut Batch<L>,
+    records: BodyRecords<'a, L>,
+    shape: &'a Shape,
+    /// Whether nothing else acts on its bodies.
+    alone: bool,
+    act: Act<'a>,
+}
+
+impl<L: Lanes> Work<L> for OnBatch<'_, L> {
+    #[inline(always)]
+    fn run(self) {
+        let Self { batch, records, shape, alone, act } = self;
+        match act {
+            Act::Begin(joints, h) => batch.begin(shape, joints, (h, alone), &records),
+            Act::Advance(joints, act) => batch.advance(shape, joints, act, &records),
+            Act::Solve(mode) => batch.sweep(mode, &records),
         }
     }
 }

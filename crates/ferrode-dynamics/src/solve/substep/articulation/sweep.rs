@@ -17,14 +17,13 @@
 //! Where nothing else acts on the bodies within a substep, the relaxing sweep has the matrix of the biased one and is known beforehand but for
 //! its bounds: its right side is that of the biased sweep without the bias, and both are solved in one pass over the factor.
 
-use super::batch::{Batch, Linear, both, linear_part, node, push};
+use super::batch::{Batch, BodyRecords, DELTAS, Linear, both, linear_part, node, push};
 use super::carry;
 use super::factor;
 use super::plan::NODE;
 use super::row::{Bound, LaneRow, Role, angular, linear};
 use super::triple::{add, cross, dot, unscaled, without_trifles};
-use core::cell::Cell;
-use ferrode_math::simd::{Lanes, Record};
+use ferrode_math::simd::Lanes;
 
 /// Trials in which rows may be freed; after them rows are only put to their bounds.
 const FREEING: usize = 6;
@@ -57,7 +56,7 @@ pub(super) enum Aim {
 impl<L: Lanes> Batch<L> {
     /// One sweep.
     #[inline(always)]
-    pub fn sweep(&mut self, mode: Mode, velocities: &[Cell<Record>], deltas: &[Cell<Record>]) {
+    pub fn sweep(&mut self, mode: Mode, records: &BodyRecords<'_, L>) {
         let goes_on = mode == Mode::Relax && core::mem::take(&mut self.ahead);
         let aim = match mode {
             Mode::Biased(_) => Aim::Biased,
@@ -72,7 +71,7 @@ impl<L: Lanes> Batch<L> {
             self.begin_projection();
         } else {
             if !core::mem::take(&mut self.gathered) {
-                self.gather(velocities);
+                self.gather(records);
             }
             if !self.bounds.is_empty() {
                 self.before.clone_from(&self.velocities);
@@ -81,7 +80,7 @@ impl<L: Lanes> Batch<L> {
         }
         self.settle(aim, both, solved);
         if aim == Aim::Project {
-            return self.move_bodies(deltas);
+            return self.move_bodies(records);
         }
         if both {
             self.ahead = true;
@@ -89,9 +88,9 @@ impl<L: Lanes> Batch<L> {
             self.accept();
         }
         if let Mode::Biased(h) = mode {
-            self.bend(h, deltas);
+            self.bend(h, records);
         }
-        self.scatter(velocities);
+        self.scatter(records);
     }
 
     /// Bodies are moved from where they are, by rows without bounds that are no springs.
@@ -290,31 +289,31 @@ impl<L: Lanes> Batch<L> {
 
     /// Adds what was found in place of velocities to the displacements.
     #[inline(always)]
-    fn move_bodies(&mut self, deltas: &[Cell<Record>]) {
-        for (i, index) in self.bodies.iter().enumerate() {
+    fn move_bodies(&mut self, records: &BodyRecords<'_, L>) {
+        for i in 0..self.bodies.len() {
             let (step, [root, inverse]) = (&self.velocities[i], self.yields[i]);
-            let mut delta = L::gather(deltas, index);
+            let mut delta = records.gather(DELTAS, i);
             let curve = curve(&delta, inverse, &angular(step), &self.scales[i], &self.unscales[i]);
             for k in 0..3 {
                 delta[k] += step[k];
                 delta[k + 3] += (step[k + 3] + curve[k]) * root;
             }
-            L::scatter(deltas, index, delta);
+            records.scatter(DELTAS, i, delta);
         }
     }
 
     /// Before the bodies move by `h` seconds: adds to their rotation vectors what that motion does to them beside being added.
     #[inline(always)]
-    fn bend(&self, h: f32, deltas: &[Cell<Record>]) {
+    fn bend(&self, h: f32, records: &BodyRecords<'_, L>) {
         let h = L::splat(h);
-        for (i, index) in self.bodies.iter().enumerate() {
+        for i in 0..self.bodies.len() {
             let ([.., d, e, f], [root, inverse]) = (self.velocities[i], self.yields[i]);
-            let mut delta = L::gather(deltas, index);
+            let mut delta = records.gather(DELTAS, i);
             let curve = curve(&delta, inverse, &[d * h, e * h, f * h], &self.scales[i], &self.unscales[i]);
             for k in 0..3 {
                 delta[k + 3] += curve[k] * root;
             }
-            L::scatter(deltas, index, delta);
+            records.scatter(DELTAS, i, delta);
         }
     }
 }
