@@ -12,8 +12,10 @@ mod jolt;
 #[cfg(feature = "mujoco")]
 mod mujoco;
 mod ode;
-#[cfg(any(test, feature = "box3d", feature = "bullet", feature = "jolt", feature = "mujoco"))]
+#[allow(dead_code, reason = "each engine uses some of them")]
 mod parts;
+#[cfg(feature = "physx")]
+mod physx;
 mod rapier;
 
 use crate::engine::{Choice, Engine};
@@ -41,6 +43,10 @@ pub fn all() -> Vec<Choice> {
             refuses: mujoco::refuses,
             ..choice("mujoco", false, |s, _| Box::new(mujoco::Mujoco::new(s)))
         },
+        #[cfg(feature = "physx")]
+        choice("physx", true, |s, t| Box::new(physx::Physx::new(s, t, physx::Solver::Default))),
+        #[cfg(feature = "physx")]
+        choice("physx tgs", true, |s, t| Box::new(physx::Physx::new(s, t, physx::Solver::Tgs))),
         choice("libode", false, |s, _| Box::new(ode::Ode::new(s))),
     ]
 }

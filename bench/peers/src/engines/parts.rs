@@ -1,7 +1,7 @@
 //! What several engines want to be told in the same way: frames of joints, masses.
 
 use crate::scene::{Form, Joint, Scene, Solid};
-use core::f64::consts::PI;
+use core::f64::consts::{FRAC_PI_2, PI};
 use ferrode_math::{Pose, Quat, Vec3, real};
 
 /// A rotation whose z axis lies along a unit vector, for engines whose hinges turn about z.
@@ -12,6 +12,11 @@ pub fn along_z(z: Vec3) -> Quat {
         None if z.z > 0.0 => Quat::IDENTITY,
         None => Quat::from_axis_angle(Vec3::X, PI),
     }
+}
+
+/// A rotation whose x axis lies along a unit vector.
+pub fn along_x(x: Vec3) -> Quat {
+    along_z(x) * Quat::from_axis_angle(Vec3::Y, -FRAC_PI_2)
 }
 
 /// A joint's frame on each of its two solids, the second one's in the world if it has none; `turn` is the frame's rotation in
