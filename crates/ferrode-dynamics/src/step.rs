@@ -1,6 +1,7 @@
 //! One step: the table of contents of the engine.
 
 mod fast;
+mod few_rows;
 mod impacts;
 mod project;
 mod quick_islands;

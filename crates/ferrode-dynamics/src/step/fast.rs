@@ -4,6 +4,7 @@
 //! own few rows exactly, given the forces found so far; then all bodies move by k. Kept for programs of old manuals: `Quick`
 //! is better at most things.
 
+use super::few_rows::FewRows;
 use super::{Island, SolverBody, Stepping, ends_of};
 use crate::arena::NIL;
 use crate::ends::StepContext;
@@ -12,9 +13,6 @@ use crate::rows::{JointRows, Row, Wrench};
 use crate::solve::Solved;
 use crate::solve::direct::IslandWork;
 use crate::{Error, StepReport, Stepper, World};
-use ferrode_lcp::dantzig::{DantzigStatus, DantzigWorkspace, solve_dantzig};
-use ferrode_lcp::dense::pad;
-use ferrode_lcp::problem::BoxedLcp;
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Vec3};
 
@@ -31,14 +29,7 @@ pub(crate) struct Workspace {
     /// Forces and torques that the program put on the island's bodies: they act in every substep.
     given: Vec<Wrench>,
     inv_mass_j: Vec<[Vec3; 4]>,
-    matrix: Vec<f64>,
-    rhs: Vec<f64>,
-    lo: Vec<f64>,
-    hi: Vec<f64>,
-    findex: Vec<i32>,
-    x: Vec<f64>,
-    w: Vec<f64>,
-    dantzig: DantzigWorkspace,
+    problem: FewRows,
 }
 
 impl World {
@@ -270,10 +261,7 @@ impl Workspace {
             body.map_or((Vec3::ZERO, Vec3::ZERO), |b| (l * b.inv_mass, b.inv_inertia * a))
         };
         self.inv_mass_j.clear();
-        self.rhs.clear();
-        self.lo.clear();
-        self.hi.clear();
-        self.findex.clear();
+        self.problem.begin(m);
         for row in rows {
             let (l1, a1) = inverse(ends[0], row.linear1, row.angular1);
             let (l2, a2) = inverse(ends[1], row.linear2, row.angular2);
@@ -282,49 +270,26 @@ impl Workspace {
                 + row.angular1.dot(free[0].1)
                 + row.linear2.dot(free[1].0)
                 + row.angular2.dot(free[1].1);
-            self.rhs.push(row.c / k - moving);
-            self.lo.push(row.lo);
-            self.hi.push(row.hi);
-            self.findex.push(row.friction_index);
+            self.problem.push(row.c / k - moving, (row.lo, row.hi), row.friction_index);
         }
-        let stride = pad(m);
-        self.matrix.clear();
-        self.matrix.resize(m * stride, 0.0);
         for r in 0..m {
             let [l1, a1, l2, a2] = self.inv_mass_j[r];
             for (c, row) in rows.iter().enumerate().take(r + 1) {
-                self.matrix[r * stride + c] =
+                *self.problem.entry(r, c) =
                     l1.dot(row.linear1) + a1.dot(row.angular1) + l2.dot(row.linear2) + a2.dot(row.angular2);
             }
-            self.matrix[r * stride + r] += rows[r].cfm / k;
+            *self.problem.entry(r, r) += rows[r].cfm / k;
         }
-        self.x.clear();
-        self.x.resize(m, 0.0);
-        self.w.clear();
-        self.w.resize(m, 0.0);
-        let mut problem = BoxedLcp {
-            n: m,
-            a: &self.matrix,
-            stride,
-            first: None,
-            b: &self.rhs,
-            lo: &self.lo,
-            hi: &self.hi,
-            findex: &self.findex,
-            x: &mut self.x,
-            w: &mut self.w,
-        };
-        let answer = solve_dantzig(&mut problem, &mut self.dantzig);
-        let solved = match answer {
-            Ok(answer) if answer.status == DantzigStatus::Solved => Solved::Completely,
-            Ok(_) => Solved::Partly,
-            Err(_) => {
+        let solved = match self.problem.solve() {
+            Some(true) => Solved::Completely,
+            Some(false) => Solved::Partly,
+            None => {
                 // Bounds that exclude zero: no force rather than a wrong one.
-                self.x.fill(0.0);
+                self.problem.x.fill(0.0);
                 Solved::Partly
             }
         };
-        for (row, lambda) in rows.iter().zip(&self.x) {
+        for (row, lambda) in rows.iter().zip(&self.problem.x) {
             if let Some(body) = island.bodies.get_mut(span.bodies[0] as usize) {
                 body.force += row.linear1 * *lambda;
                 body.torque += row.angular1 * *lambda;
@@ -334,7 +299,7 @@ impl Workspace {
                 body.torque += row.angular2 * *lambda;
             }
         }
-        island.lambda[span.first..].copy_from_slice(&self.x);
+        island.lambda[span.first..].copy_from_slice(&self.problem.x);
         solved
     }
 }

@@ -5,13 +5,11 @@
 //! the row leaves. Both are limits of stiff elastic bodies; which one is nearer depends on the bodies (B. Smith, D. M. Kaufman,
 //! E. Vouga, R. Tamstorf, E. Grinspun, "Reflections on simultaneous impact", SIGGRAPH 2012).
 
+use super::few_rows::FewRows;
 use super::{Island, SolverBody};
 use crate::World;
 use crate::arena::NIL;
 use crate::joint::{JointKind, SurfaceMode};
-use ferrode_lcp::dantzig::{DantzigStatus, DantzigWorkspace, solve_dantzig};
-use ferrode_lcp::dense::pad;
-use ferrode_lcp::problem::BoxedLcp;
 use ferrode_math::Vec3;
 use std::collections::BinaryHeap;
 
@@ -31,14 +29,7 @@ pub(crate) struct Workspace {
     starts: Vec<u32>,
     at_body: Vec<u32>,
     queue: BinaryHeap<(u64, core::cmp::Reverse<u32>)>,
-    matrix: Vec<f64>,
-    rhs: Vec<f64>,
-    lo: Vec<f64>,
-    hi: Vec<f64>,
-    findex: Vec<i32>,
-    impulse: Vec<f64>,
-    slack: Vec<f64>,
-    dantzig: DantzigWorkspace,
+    problem: FewRows,
 }
 
 /// A contact's normal row.
@@ -206,7 +197,6 @@ impl Workspace {
         let Pair { first, end, .. } = self.pairs[pair];
         let points = &self.points[first as usize..end as usize];
         let n = points.len();
-        let stride = pad(n);
         let inverse = |place: u32| {
             bodies
                 .get(place as usize)
@@ -221,54 +211,31 @@ impl Workspace {
             let [a, b] = p.angular;
             (normal, if swapped { [b, a] } else { [a, b] })
         };
-        self.matrix.clear();
-        self.matrix.resize(n * stride, 0.0);
-        self.rhs.clear();
+        self.problem.begin(n);
         for (i, p) in points.iter().enumerate() {
             let (normal, angular) = seen(p);
             for (j, q) in points.iter().enumerate().take(i + 1) {
                 let (other, turning) = seen(q);
                 let linear = normal.dot(other) * (ends[0].0 + ends[1].0);
-                self.matrix[i * stride + j] =
+                *self.problem.entry(i, j) =
                     linear + angular[0].dot(ends[0].1 * turning[0]) + angular[1].dot(ends[1].1 * turning[1]);
             }
-            self.matrix[i * stride + i] *= 1.0 + SHARED;
+            *self.problem.entry(i, i) *= 1.0 + SHARED;
             let departure = p.departure(bodies);
             let wanted = match p.bounce {
                 Some((bounce, least)) if -departure > least => -bounce * departure,
                 _ => 0.0,
             };
-            self.rhs.push(wanted - departure);
+            self.problem.push(wanted - departure, (0.0, f64::INFINITY), -1);
         }
         // Neither body can move.
-        if !(0..n).all(|i| self.matrix[i * stride + i] > 0.0) {
+        if !(0..n).all(|i| *self.problem.entry(i, i) > 0.0) {
             return false;
         }
-        for (list, value) in [(&mut self.lo, 0.0), (&mut self.hi, f64::INFINITY), (&mut self.impulse, 0.0)] {
-            list.clear();
-            list.resize(n, value);
-        }
-        self.findex.clear();
-        self.findex.resize(n, -1);
-        self.slack.clear();
-        self.slack.resize(n, 0.0);
-        let mut problem = BoxedLcp {
-            n,
-            a: &self.matrix,
-            stride,
-            first: None,
-            b: &self.rhs,
-            lo: &self.lo,
-            hi: &self.hi,
-            findex: &self.findex,
-            x: &mut self.impulse,
-            w: &mut self.slack,
-        };
-        let solved = solve_dantzig(&mut problem, &mut self.dantzig);
-        if !solved.is_ok_and(|answer| answer.status == DantzigStatus::Solved) {
+        if self.problem.solve() != Some(true) {
             return false;
         }
-        for (p, impulse) in points.iter().zip(&self.impulse) {
+        for (p, impulse) in points.iter().zip(&self.problem.x) {
             for (side, place) in p.bodies.into_iter().enumerate() {
                 if let Some(body) = bodies.get_mut(place as usize) {
                     let along = if side == 0 { p.normal } else { -p.normal };

@@ -26,17 +26,7 @@ impl<L: Lanes> Batch<L> {
                     match joint.linear {
                         Linear::Points([s, t]) if i == 0 => {
                             let mass = s * s + t * t;
-                            block = [
-                                block[0] + mass,
-                                block[1],
-                                block[2],
-                                block[3],
-                                block[4] + mass,
-                                block[5],
-                                block[6],
-                                block[7],
-                                block[8] + mass,
-                            ];
+                            add_to_diagonal(&mut block, mass);
                         }
                         Linear::Points(_) => {}
                         Linear::Any(at) => {
@@ -78,17 +68,7 @@ impl<L: Lanes> Batch<L> {
                     if i == 0 && j == 0 {
                         let mass = s[sides[0]] * t[sides[1]];
                         let mass = if x == y { mass } else { -mass };
-                        block = [
-                            block[0] + mass,
-                            block[1],
-                            block[2],
-                            block[3],
-                            block[4] + mass,
-                            block[5],
-                            block[6],
-                            block[7],
-                            block[8] + mass,
-                        ];
+                        add_to_diagonal(&mut block, mass);
                     }
                 }
                 _ => {
@@ -147,6 +127,14 @@ fn add_products<L: Lanes>(a: &Block<L>, b: &Block<L>) -> Block<L> {
         *s += *b;
     }
     sum
+}
+
+/// What masses, moved without being turned, add to a block of three rows along x, y and z.
+#[inline(always)]
+fn add_to_diagonal<L: Lanes>(block: &mut Block<L>, mass: L) {
+    for k in 0..NODE {
+        block[k * NODE + k] += mass;
+    }
 }
 
 /// Takes rows that don't take part out of a block.
