@@ -18,13 +18,15 @@
 //! **Order.** At first all rows without a friction index in their order, then all with one. At the start of the iterations 8, 16, 24, …
 //! the whole order is shuffled in place: for k = 1 … m-1, r = random(k + 1), entries k and r change places.
 //!
-//! Up to two dozen rows on few bodies, such as a box on the ground, are visited in the same order on their matrix (`small`), those of several
-//! problems side by side if [`begin_sor_rows`] has taken them in.
+//! Up to two dozen rows are visited in the same order by other means: those of one body, such as a box on the ground, in lanes (`alone`), those
+//! of few bodies on their matrix (`small`); several problems side by side if [`begin_sor_rows`] has taken them in.
 
+mod alone;
 mod small;
 mod sweep;
 
 use crate::error::{LcpError, check_len};
+use alone::Alone;
 use core::marker::PhantomData;
 use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 use small::Small;
@@ -38,7 +40,7 @@ pub const NO_BODY: u32 = u32::MAX;
 const SHUFFLE_PERIOD: u32 = 8;
 
 /// So many problems that wait are put in order by size.
-const TOGETHER: usize = 8;
+const TOGETHER: usize = 16;
 
 /// The bodies that stand for no body: several, by turns, so that rows that have none of their own don't wait for each other.
 const STAND_INS: usize = 8;
@@ -178,6 +180,8 @@ enum State {
     /// The problem is taken in, and its random numbers are drawn.
     Begun {
         iterations: u32,
+        /// It is one of a body alone.
+        alone: bool,
     },
     Ended {
         iterations: u32,
@@ -203,6 +207,9 @@ pub struct SorWorkspace {
     /// The accelerations, and those of [`STAND_INS`] bodies that stand for no body.
     acceleration: Vec<SorAcceleration>,
     small: Small,
+    alone: Alone,
+    /// All rows are of one body.
+    one_body: bool,
     /// What [`begin_sor_rows`] has begun, or how it ended.
     state: State,
     /// Largest component of `B` per row and body; sums of upward and downward changes per body.
@@ -392,13 +399,58 @@ impl<'a, I: Iterator<Item = &'a mut SorWorkspace>> QuadKernel for Finish<I> {
                 count += 1;
             }
             let some = &mut some[..count];
+            finish_alone::<Q>(some);
             // Those of one size side by side: a visit takes as long as that of the largest.
             some.sort_unstable_by_key(|workspace| workspace.as_ref().map(|workspace| workspace.small.left()));
-            finish_all::<Q>(some.iter_mut().filter_map(Option::take));
+            let left = some.iter_mut().filter_map(Option::take);
+            finish_all::<Q>(left.filter(|workspace| matches!(workspace.state, State::Begun { .. })));
             if count < TOGETHER {
                 return;
             }
         }
+    }
+}
+
+/// Solves the problems of one body, those of one size abreast: a visit takes as long as that of the largest.
+#[inline(always)]
+fn finish_alone<Q: Quad>(some: &mut [Option<&mut SorWorkspace>]) {
+    let mut sizes = [((0, 0), 0); TOGETHER];
+    let mut count = 0;
+    for (place, workspace) in some.iter().enumerate().take(TOGETHER) {
+        if let Some(SorWorkspace { alone, state: State::Begun { alone: true, .. }, .. }) = workspace {
+            sizes[count] = (alone.size(), place);
+            count += 1;
+        }
+    }
+    let sizes = &mut sizes[..count];
+    let Some(&(_, home)) = sizes.first() else { return };
+    // Always in the same memory.
+    let mut looms = some[home].as_mut().map(|workspace| core::mem::take(&mut workspace.alone.looms));
+    let Some(looms_here) = &mut looms else { return };
+    // The largest first: those that are left over at the end are small.
+    sizes.sort_unstable_by(|a, b| b.cmp(a));
+    for alike in sizes.chunk_by(|a, b| a.0.0 == b.0.0) {
+        for places in alike.chunks(alone::AT_ONCE) {
+            let mut workspaces = [const { None }; alone::AT_ONCE];
+            for (workspace, (_, place)) in workspaces.iter_mut().zip(places) {
+                *workspace = some[*place].take();
+            }
+            let mut problems = workspaces.each_mut().map(|w| w.as_mut().and_then(|w| w.problem_alone()));
+            alone::visit::<Q>(&mut problems, looms_here);
+            for (workspace, (_, place)) in workspaces.into_iter().zip(places) {
+                some[*place] = workspace;
+            }
+        }
+    }
+    for (_, place) in sizes {
+        if let Some(workspace) = &mut some[*place]
+            && let State::Begun { iterations, .. } = workspace.state
+        {
+            workspace.state = State::Ended { iterations, exit: SorExit::Completed };
+        }
+    }
+    if let (Some(workspace), Some(looms)) = (&mut some[home], looms) {
+        workspace.alone.looms = looms;
     }
 }
 
@@ -476,6 +528,7 @@ impl SorWorkspace {
             self.packed.resize(m, PackedRow::default());
         }
         self.order.clear();
+        self.one_body = nobody == 1;
         self.friction.clear();
         self.weight.clear();
         self.change.clear();
@@ -493,6 +546,7 @@ impl SorWorkspace {
             let j = r.j.as_chunks().0;
             let (j0, j1) = (Six::<Q>::load(&j[0]), Six::<Q>::load(&j[1]));
             let [first, second] = r.body.map(|body| (body as usize).min(nobody));
+            self.one_body &= first == 0;
             let (b0, b1) = (self.mass[first].times(&j[0], j0), self.mass[second].times(&j[1], j1));
             let diagonal = Six::dot([j0, j1], [b0, b1], r.cfm);
             // An empty row without CFM has no effect on anything; its force stays 0.
@@ -517,13 +571,25 @@ impl SorWorkspace {
         }
         check_len("rows", count, m)?;
         self.order.extend_from_slice(&self.friction);
-        if is_small(m, nobody, params) {
+        if self.is_alone(params) || is_small(m, nobody, params) {
             return Ok(());
         }
         find_stretches::<Q>(&self.order, &self.packed, nobody, &mut self.stretches);
         let Self { order, packed, stretches, interleaving, .. } = self;
         interleave(order, &packed[..m], nobody, stretches, interleaving);
         Ok(())
+    }
+
+    /// Whether the rows are those of one body and few.
+    fn is_alone(&self, params: &SorParams) -> bool {
+        self.one_body && params.dynamic.is_none() && alone::suits(self.order.len(), params.iterations)
+    }
+
+    /// The problem, if it is one of a body alone.
+    #[inline(always)]
+    fn problem_alone(&mut self) -> Option<alone::Problem<'_>> {
+        let Self { alone, packed, lambda, acceleration, .. } = self;
+        Some(alone::Problem { alone, packed, lambda, acceleration: acceleration.first_mut()? })
     }
 
     /// Writes the answer down if all visits are made; else gives the workspace back.
@@ -535,7 +601,7 @@ impl SorWorkspace {
         let (rows, bodies) = (self.order.len(), self.acceleration.len() - STAND_INS);
         let Self { small, packed, lambda, acceleration, .. } = self;
         small.finish::<Q>(&packed[..rows], &mut lambda[..rows], &mut acceleration[..bodies]);
-        if let State::Begun { iterations } = self.state {
+        if let State::Begun { iterations, .. } = self.state {
             self.state = State::Ended { iterations, exit: SorExit::Completed };
         }
         None
@@ -554,9 +620,13 @@ impl SorWorkspace {
             return ended(0, SorExit::Completed);
         }
         let (rows, bodies) = (self.order.len(), self.acceleration.len() - STAND_INS);
+        if !DYNAMIC && self.is_alone(params) {
+            self.alone.begin(&mut self.packed[..rows], &self.order, params, random);
+            return State::Begun { iterations: planned, alone: true };
+        }
         if !DYNAMIC && is_small(rows, bodies, params) {
             self.small.begin::<Q>(&self.packed[..rows], &self.order, bodies, params, random);
-            return State::Begun { iterations: planned };
+            return State::Begun { iterations: planned, alone: false };
         }
         let mut done = 0;
         let mut extra = 0;

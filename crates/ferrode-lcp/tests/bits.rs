@@ -55,7 +55,7 @@ fn relax(bodies: u32, rows: i32) -> (u64, u64) {
             let mut j = [0.0; 12];
             j.fill_with(|| numbers.next());
             let first = i as u32 / 6 % bodies;
-            let second = if i % 30 < 6 { NO_BODY } else { (first + 5) % bodies };
+            let second = if i % 30 < 6 || bodies == 1 { NO_BODY } else { (first + 5) % bodies };
             let (hi, findex) = if i % 3 == 0 { (f64::INFINITY, -1) } else { (0.5, i - i % 3) };
             SorRow { j, rhs: numbers.next(), cfm: 0.01, lo: 0.0, hi, findex, body: [first, second] }
         })
@@ -80,4 +80,9 @@ fn relaxation() {
 #[test]
 fn relaxation_of_a_few_rows() {
     assert_eq!(relax(2, 22), (9_115_862_276_589_748_461, 1_559_078_663_569_451_980));
+}
+
+#[test]
+fn relaxation_of_a_body_alone() {
+    assert_eq!(relax(1, 22), (5_758_016_646_365_456_922, 6_632_582_787_960_250_710));
 }

@@ -12,7 +12,7 @@ use crate::{StepReport, World};
 use ferrode_math::random::OdeRandom;
 
 /// How many islands are stepped side by side. More find better company, but their memory drives other things out of the caches.
-const COMPANY: usize = 2;
+const COMPANY: usize = 16;
 /// An island with more joints begins a new company, so that only the first one's memory grows large.
 const MOST_JOINTS: usize = 24;
 

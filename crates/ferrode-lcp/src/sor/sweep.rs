@@ -131,6 +131,33 @@ impl PackedRow {
         Six { head: Q::load(&self.head[n]), tail: Q::Pair::load(&self.tail[n]) }
     }
 
+    /// A row whose visit changes no bit of a body: it adds −0 times 0. It is scaled by the force that is always 1, and wants 1 but has no room.
+    #[inline(always)]
+    pub fn without_effect() -> Self {
+        let mut row = Self { rhs: 1.0, ..Self::default() };
+        (row.head[1], row.tail[1]) = ([-0.0; 4], [-0.0; 2]);
+        row
+    }
+
+    /// The first four numbers of one of its four vectors.
+    #[inline(always)]
+    pub fn head(&self, n: usize) -> &[f64; 4] {
+        &self.head[n]
+    }
+
+    /// The last two numbers of each of the first body's vectors.
+    #[inline(always)]
+    pub fn tails(&self) -> [f64; 4] {
+        let [[a, b], [c, d], ..] = self.tail;
+        [a, b, c, d]
+    }
+
+    /// The right-hand side, the CFM and the bounds.
+    #[inline(always)]
+    pub fn scalars(&self) -> [f64; 4] {
+        [self.rhs, self.cfm, self.lo, self.hi]
+    }
+
     /// One of its four vectors, number by number.
     #[inline(always)]
     pub fn numbers(&self, n: usize) -> [f64; 6] {
