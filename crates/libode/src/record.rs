@@ -192,7 +192,8 @@ impl WorldRecord {
     /// Takes all bodies' outside changes in.
     pub fn take_in_all(&self) {
         self.engine(|world| {
-            let bodies: Vec<BodyId> = world.bodies().map(|(_, body)| handle_of(body.user_data())).collect();
+            let mut bodies: Vec<BodyId> = Vec::with_capacity(world.body_count());
+            bodies.extend(world.bodies().map(|(_, body)| handle_of(body.user_data())));
             for body in bodies.into_iter().filter_map(BodyId::live) {
                 body.take_in_to(world);
             }

@@ -84,7 +84,7 @@ fn contacts_of(
     if let Some((collider, swapped)) = collider(a.class.get(), b.class.get()) {
         return from + by_program((a, b), flags, target, from, collider, swapped);
     }
-    if a.is_plain() && b.is_plain() {
+    if a.is_silent() && b.is_silent() {
         return plain_contacts(a, b, CollideOptions { max_contacts: left as u16, ..options }, target, from);
     }
     // A wrapper in the second place is put first, and its contacts are turned round.

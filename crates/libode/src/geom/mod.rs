@@ -126,6 +126,17 @@ impl GeomRecord {
         (class::SPHERE..=class::PLANE).contains(&self.class.get())
     }
 
+    /// Whether it is just its shape at its place, or a mesh about which the program is not asked; takes over the mesh's latest build.
+    #[inline]
+    fn is_silent(&self) -> bool {
+        let silent_mesh = || self.class.get() == class::TRIMESH && self.mesh.is_silent();
+        self.is_plain()
+            || (silent_mesh() && {
+                self.refresh_mesh();
+                true
+            })
+    }
+
     fn require_space(&self) -> Outcome<()> {
         if self.is_space() { Ok(()) } else { Err(Fault::user("argument not a space")) }
     }

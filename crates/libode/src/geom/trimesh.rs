@@ -71,6 +71,15 @@ pub struct MeshGeom {
 }
 
 impl MeshGeom {
+    /// Whether no function of the program's is asked about triangles, or named contacts.
+    #[inline]
+    pub fn is_silent(&self) -> bool {
+        self.tri.get().is_none()
+            && self.array.get().is_none()
+            && self.ray.get().is_none()
+            && self.merge.get().is_none()
+    }
+
     /// The program's function that names contacts of several triangles, where there are such contacts.
     pub fn names_merged(&self) -> Option<MergeCallback> {
         self.merge.get().filter(|_| self.merge() == ContactMerge::Full)
