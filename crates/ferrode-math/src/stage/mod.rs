@@ -22,8 +22,8 @@
 //! 1. `run` neither returns nor unwinds before every task that a thread has begun is finished, and after that none can begin: so tasks
 //!    may borrow from the caller (`crew`).
 //! 2. Every number is handed out once per run: so a piece of a slice is lent to one task (`pieces`).
-//! 3. Indices within a group were found to be all different, and cannot change afterwards: so tasks of one group never share a
-//!    record (`exclusive`).
+//! 3. No two parts of a group were found to have an index in common, and indices cannot change afterwards: so tasks, each with a part of
+//!    its own, never share a record (`exclusive`).
 // As `simd`, fenced: a test of the workspace looks.
 #![allow(unsafe_code)]
 

@@ -202,3 +202,113 @@ impl Axis {
         Self { number, down: along[number] < 0.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::substep::contact::sort_key;
+
+    /// Bodies along x, each in contact with the next one, and with so many contacts to the ground.
+    fn row(places: &[f32], on_ground: impl Fn(usize) -> usize) -> (SolverBodies, Vec<ManifoldKey>) {
+        let mut bodies = SolverBodies::default();
+        bodies.centres = places.iter().map(|x| [*x, 0.0, 0.5]).collect();
+        bodies.origin = Vec3::new(1e7, 0.0, 0.0);
+        let key = |bodies, movable| ManifoldKey { bodies, place: 0, movable, sort: sort_key(0, 0, false, 4) };
+        let mut keys = Vec::new();
+        for i in 0..places.len() as u32 {
+            keys.extend((0..on_ground(i as usize)).map(|_| key([i, u32::MAX], [true, false])));
+            if i > 0 {
+                keys.push(key([i - 1, i], [true, true]));
+            }
+        }
+        (bodies, keys)
+    }
+
+    /// Contacts of each part, and between parts.
+    fn split(parts: &mut Parts, (bodies, keys): &(SolverBodies, Vec<ManifoldKey>)) -> Vec<usize> {
+        let count = parts.find(&Crew::new(2), bodies, keys);
+        let mut sizes = vec![0; count + 1];
+        for key in keys {
+            let section = parts.section(key.movable_bodies());
+            let owners =
+                key.movable_bodies().map(|body| body.map(|body| usize::from(parts.owners[body as usize])));
+            match owners {
+                [Some(a), Some(b)] if a != b => assert_eq!(section, count),
+                owners => assert!(owners.into_iter().flatten().all(|owner| owner == section)),
+            }
+            sizes[section] += 1;
+        }
+        sizes
+    }
+
+    /// Whether such cuts would stay.
+    fn even(sizes: &[usize]) -> bool {
+        let parts = &sizes[..sizes.len() - 1];
+        let most = parts.iter().max().copied().unwrap_or(0) * parts.len();
+        most as f32 <= UNEVEN * parts.iter().sum::<usize>() as f32
+    }
+
+    #[test]
+    fn parts_have_as_many_contacts() {
+        // More contacts at one end; the last bodies' numbers first, and not.
+        for down in [false, true] {
+            let place = |i: usize| if down { 1000 - i } else { i } as f32;
+            let places: Vec<f32> = (0..1000).map(place).collect();
+            let world = row(&places, |i| if places[i] < 300.0 { 4 } else { 1 });
+            let mut parts = Parts::default();
+            let sizes = split(&mut parts, &world);
+            assert_eq!((sizes.len(), parts.axis.number, parts.axis.down), (FEW + 1, 0, down));
+            assert!(even(&sizes), "{sizes:?}");
+            assert_eq!(sizes[FEW], FEW - 1, "one contact across each cut");
+            assert!(parts.owners.is_sorted());
+        }
+    }
+
+    #[test]
+    fn small_worlds_and_those_without_contacts_are_one_part() {
+        let places: Vec<f32> = (0..1000).map(|i| i as f32).collect();
+        assert_eq!(split(&mut Parts::default(), &row(&places[..399], |_| 1)).len(), 2);
+        assert_eq!(split(&mut Parts::default(), &row(&places[..400], |_| 1)).len(), 3);
+        let (bodies, mut keys) = row(&places, |_| 1);
+        keys.iter_mut().for_each(|key| *key = ManifoldKey::LEFT_OUT);
+        assert_eq!(Parts::default().find(&Crew::default(), &bodies, &keys), 1);
+        assert_eq!(Parts::default().find(&Crew::default(), &bodies, &[]), 1);
+    }
+
+    #[test]
+    fn cuts_stay_until_parts_are_uneven_and_go_with_a_clone() {
+        let places: Vec<f32> = (0..1000).map(|i| i as f32).collect();
+        let before = row(&places, |_| 1);
+        let mut parts = Parts::default();
+        split(&mut parts, &before);
+        let cuts = parts.cuts.clone();
+        for _ in 0..2 * PATIENCE {
+            split(&mut parts, &before);
+        }
+        assert_eq!(parts.cuts, cuts);
+        // All move to one side.
+        let after = row(&places.iter().map(|x| 0.3 * x).collect::<Vec<_>>(), |_| 1);
+        let mut changes = 0;
+        for _ in 0..2 * PATIENCE {
+            let mut copy = parts.clone();
+            let old = parts.cuts.clone();
+            let sizes = split(&mut parts, &after);
+            assert_eq!(split(&mut copy, &after), sizes);
+            assert_eq!(copy.cuts, parts.cuts);
+            changes += usize::from(parts.cuts != old);
+        }
+        assert_eq!(changes, 1);
+        let sizes = split(&mut parts, &after);
+        assert!(even(&sizes), "{sizes:?}");
+    }
+
+    #[test]
+    fn places_that_are_no_numbers_do_no_harm() {
+        let mut places: Vec<f32> = (0..1000).map(|i| i as f32).collect();
+        places[7] = f32::NAN;
+        places[500] = f32::INFINITY;
+        let mut parts = Parts::default();
+        let sizes = split(&mut parts, &row(&places, |_| 1));
+        assert_eq!(sizes.iter().sum::<usize>(), 1999);
+    }
+}
