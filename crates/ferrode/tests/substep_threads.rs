@@ -224,7 +224,7 @@ fn joints_kinematic_and_fast_bodies() {
 #[test]
 fn worlds_share_helpers_and_clones_go_on_alike() {
     let mut world = world();
-    // Enough for four parts. They topple to one side, so that these are cut anew meanwhile.
+    // Enough for four parts.
     for i in 0..900u32 {
         let layer = f64::from(i / 100);
         let at = Vec3::new(f64::from(i % 10) * 0.9 + 0.3 * layer, f64::from(i / 10 % 10) * 0.9, 0.5 + layer);
