@@ -1,5 +1,6 @@
 //! What the cache knows of a geom.
 
+use crate::manifold::Vec3f;
 use crate::space::f32_box::Box32;
 use crate::{Frame, Shape};
 use ferrode_math::{Aabb, Vec3};
@@ -44,9 +45,9 @@ impl Told<'_> {
 
     /// As [`PairCache::set_ahead`](super::PairCache::set_ahead).
     #[inline]
-    pub fn set_ahead(&mut self, ahead: f32) {
+    pub fn set_ahead(&mut self, ahead: f32, way: Vec3f) {
         if let Some(geom) = &mut self.geom {
-            geom.look_ahead(self.id, ahead, self.next, self.news);
+            geom.look_ahead(self.id, (ahead, way), self.next, self.news);
         }
     }
 
@@ -73,6 +74,8 @@ pub(super) struct GeomState {
     /// The update in which its leaf changed last.
     pub leaf_changed: u32,
     pub ahead: f32,
+    /// In the coming step.
+    pub way: Vec3f,
     pub motion: Motion,
     pub bounded: bool,
 }
@@ -91,6 +94,7 @@ impl GeomState {
             moved: 0,
             leaf_changed: 0,
             ahead: 0.0,
+            way: Vec3f::ZERO,
             motion,
             bounded,
         }
@@ -105,6 +109,17 @@ impl GeomState {
     #[inline]
     pub fn spent(&self) -> f64 {
         self.odometer + f64::from(self.ahead)
+    }
+
+    /// How far a pair looks ahead beyond the margin: as far as both do, but no further than they come nearer.
+    #[inline(always)]
+    pub fn ahead_of_both(&self, other: &Self) -> f64 {
+        let ahead = self.ahead + other.ahead;
+        if ahead == 0.0 {
+            return 0.0;
+        }
+        let nearer = (self.way - other.way).length();
+        f64::from(if nearer < ahead { nearer } else { ahead })
     }
 
     /// Goes to another place; false if that is none, or the same.
@@ -144,9 +159,9 @@ impl GeomState {
 
     /// Looks so far ahead from update `next` on.
     #[inline]
-    pub fn look_ahead(&mut self, id: u32, ahead: f32, next: u32, news: &mut News) {
-        if ahead.is_finite() && ahead >= 0.0 {
-            self.ahead = ahead;
+    pub fn look_ahead(&mut self, id: u32, (ahead, way): (f32, Vec3f), next: u32, news: &mut News) {
+        if ahead.is_finite() && ahead >= 0.0 && way.length_squared().is_finite() {
+            (self.ahead, self.way) = (ahead, way);
             if self.spent() > self.leaf_limit && self.moved != next {
                 self.moved = next;
                 news.moved.push(id);

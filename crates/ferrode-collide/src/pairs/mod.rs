@@ -47,7 +47,7 @@ use geoms::GeomState;
 use geoms::News;
 pub use geoms::{Motion, Told};
 
-use crate::manifold::Axis;
+use crate::manifold::{Axis, Vec3f};
 use crate::space::dynamic_tree::DynamicTree;
 use crate::{Frame, Shape};
 use ferrode_math::stage::{Crew, chunks};
@@ -179,9 +179,10 @@ impl PairCache {
         self.tell_of(id, |geom| geom.move_geom(frame));
     }
 
-    /// How far a geom may go in the coming step beyond the margin: contacts are looked for so far ahead, in metres.
-    pub fn set_ahead(&mut self, id: u32, ahead: f32) {
-        self.tell_of(id, |geom| geom.set_ahead(ahead));
+    /// How far a geom may go in the coming step beyond the margin, in metres, and its way in that step: contacts are looked for so far
+    /// ahead. Two geoms that go the same way don't come nearer: they look no further ahead than their ways differ.
+    pub fn set_ahead(&mut self, id: u32, ahead: f32, way: Vec3f) {
+        self.tell_of(id, |geom| geom.set_ahead(ahead, way));
     }
 
     /// Calls `tell` for a geom, to tell what became of it.

@@ -253,11 +253,37 @@ fn fast_ones_are_seen_ahead() {
     cache.insert(1, ball, &Frame::from(&Pose::from_position(Vec3::X * -2.0)), Motion::Awake);
     cache.update(&|_, _| true);
     assert_eq!(cache.contacts().count(), 0);
-    cache.set_ahead(1, 2.5);
+    cache.set_ahead(1, 2.5, Vec3f::X * 2.5);
     cache.update(&|_, _| true);
     let depths: Vec<f32> = cache.contacts().map(|(_, c)| c.manifold.depth()).collect();
     assert_eq!(depths.len(), 1);
     assert!((depths[0] + 1.89).abs() < 1e-6);
+}
+
+#[test]
+fn those_that_go_the_same_way_are_seen_when_they_no_longer_do() {
+    let ball = Shape::from(Sphere::new(0.1).unwrap());
+    let mut cache = PairCache::new(PairSettings::default());
+    let place = |x: f64| Frame::from(&Pose::from_position(Vec3::new(x, 0.0, 0.0)));
+    for (id, x) in [(0, 0.0), (1, 0.5)] {
+        cache.insert(id, ball.clone(), &place(x), Motion::Awake);
+    }
+    let mut look = |ways: [Vec3f; 2]| {
+        for (id, way) in [(0, ways[0]), (1, ways[1])] {
+            cache.set_ahead(id, 0.4, way);
+        }
+        cache.update(&|_, _| true);
+        (cache.pair_count(), cache.contacts().count())
+    };
+    let fall = Vec3f::Z * -0.42;
+    assert_eq!(look([fall, fall]), (1, 0));
+    assert_eq!(look([fall, fall]), (1, 0));
+    // 0.3 m apart, of which the margin is 0.02 m.
+    assert_eq!(look([fall, fall + Vec3f::X * 0.27]), (1, 0));
+    assert_eq!(look([fall, fall + Vec3f::X * 0.29]), (1, 1));
+    // One is stopped, the other goes on.
+    assert_eq!(look([fall, fall]), (1, 1));
+    assert_eq!(look([fall, Vec3f::ZERO]), (1, 1));
 }
 
 #[test]

@@ -81,7 +81,13 @@ fn two(geoms: &[Option<GeomState>], a: u32, b: u32) -> Option<(&GeomState, &Geom
 /// Points no further apart than this belong to a manifold of the two.
 #[inline(always)]
 fn margin(settings: &PairSettings, a: &GeomState, b: &GeomState) -> f64 {
-    settings.margin + f64::from(a.ahead + b.ahead)
+    settings.margin + a.ahead_of_both(b)
+}
+
+/// The odometers of both, and what the pair looks ahead: see [`GeomState::spent`].
+#[inline(always)]
+fn spent(a: &GeomState, b: &GeomState) -> f64 {
+    a.odometer + b.odometer + a.ahead_of_both(b)
 }
 
 /// How far two touching geoms may move until their manifold is found anew.
@@ -302,7 +308,7 @@ impl PairCache {
                 if pair.first != NONE && !pair.concave {
                     return;
                 }
-                let sum = a.spent() + b.spent();
+                let sum = spent(a, b);
                 // What has no bounds keeps no odometer of its turns.
                 let turned = (!a.bounded && a.moved == *step) || (!b.bounded && b.moved == *step);
                 if sum <= pair.limit && !turned {
@@ -347,7 +353,7 @@ impl PairCache {
                 if a.moved != *step && b.moved != *step {
                     return;
                 }
-                let sum = a.spent() + b.spent();
+                let sum = spent(a, b);
                 let turned = (!a.bounded && a.moved == *step) || (!b.bounded && b.moved == *step);
                 let pair = &pairs[contact.pair as usize];
                 if contact.concave || (sum <= contact.limit && !turned) {

@@ -2,6 +2,7 @@
 
 use super::Pipeline;
 use crate::{GeomInfo, World};
+use ferrode_collide::manifold::Vec3f;
 use ferrode_collide::pairs::{Motion, Told};
 use ferrode_collide::{Frame, GeomKey};
 use ferrode_dynamics::{Body, BodyKey};
@@ -206,11 +207,12 @@ impl Known {
         if !awake {
             return;
         }
-        let travel = body.linear_velocity().length() * h;
+        let way = body.linear_velocity() * h;
+        let travel = way.length();
         let ahead = if travel > margin { (travel - margin) as f32 } else { 0.0 };
-        if ahead != self.ahead {
+        if ahead != self.ahead || ahead > 0.0 {
             self.ahead = ahead;
-            geom.set_ahead(ahead.min(self.thickness));
+            geom.set_ahead(ahead.min(self.thickness), Vec3f::new(way.x as f32, way.y as f32, way.z as f32));
         }
     }
 }
