@@ -2,7 +2,7 @@
 
 use crate::World;
 use crate::arena::NIL;
-use ferrode_lcp::ABREAST;
+use ferrode_lcp::abreast;
 
 /// Bodies and joints of all islands, in the order in which they are stepped: the order of rows depends on it, so it is
 /// ODE's.
@@ -34,7 +34,10 @@ impl Islands {
             (bodies.len(), joints.len())
         };
         let first = size(island);
-        1 + (island + 1..self.ends.len()).take(ABREAST - 1).take_while(|other| size(*other) == first).count()
+        1 + (island + 1..self.ends.len())
+            .take(abreast() - 1)
+            .take_while(|other| size(*other) == first)
+            .count()
     }
 }
 

@@ -16,7 +16,7 @@ use crate::solve::direct::{self, ImpactLaw, IslandWork};
 use crate::solve::substep;
 use crate::timing::Phase;
 use crate::{Error, StepReport, World, gyroscopic, integrate};
-use ferrode_lcp::ABREAST;
+use ferrode_lcp::abreast;
 use ferrode_math::random::OdeRandom;
 use ferrode_math::simd::{Compute, compute_wide};
 use ferrode_math::stage::chunks;
@@ -229,7 +229,7 @@ impl World {
         let mut first = 0;
         while first < islands.ends.len() {
             // Without threads only those gain that are solved together.
-            let most = if at_once == ABREAST { islands.alike(first) } else { islands.ends.len() - first };
+            let most = if at_once == abreast() { islands.alike(first) } else { islands.ends.len() - first };
             let works = &mut works[..at_once.min(most)];
             for (i, work) in works.iter_mut().enumerate() {
                 let (bodies, joints) = islands.of(first + i);
@@ -248,7 +248,9 @@ impl World {
                     let (settings, number, past) = (&self.params.direct, report.islands, &*direct);
                     // Among threads few islands are shared out one by one.
                     let threads = self.crew.threads();
-                    let some = if threads > 1 && works.len() < ABREAST * threads { 1 } else { ABREAST };
+                    let share = works.len() / threads;
+                    let some =
+                        [abreast(), 4].into_iter().find(|some| threads == 1 || *some <= share).unwrap_or(1);
                     self.crew.each(chunks(works, some), |i, works| {
                         direct::solve_all(works, h, settings, number + some * i, past);
                     });
@@ -286,7 +288,7 @@ impl World {
         if islands.ends.len() < 2 || islands.bodies.iter().any(watched) {
             1
         } else if threads == 1 || islands.joints.len() < LEAST_JOINTS {
-            ABREAST
+            abreast()
         } else {
             ISLANDS_PER_THREAD * threads
         }

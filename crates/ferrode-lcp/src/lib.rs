@@ -31,7 +31,7 @@ pub use dantzig::{
 pub use error::LcpError;
 pub use pivoting::{
     ABREAST, AbreastWorkspace, PivotingOptions, PivotingReport, PivotingWorkspace, RowState, SparseLcp,
-    solve_abreast, solve_pivoting,
+    abreast, solve_abreast, solve_pivoting,
 };
 pub use problem::BoxedLcp;
 pub use residual::natural_residual;

@@ -27,7 +27,7 @@ mod interior;
 pub(crate) mod line;
 mod residuals;
 
-pub use abreast::{ABREAST, AbreastWorkspace, solve_abreast};
+pub use abreast::{ABREAST, AbreastWorkspace, abreast, solve_abreast};
 
 use crate::error::LcpError;
 use crate::problem::check_row;
@@ -51,7 +51,7 @@ pub enum RowState {
 }
 
 /// A boxed problem whose matrix is `J J^T + diag(sigma)`, with the places for its answer.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct SparseLcp<'a> {
     /// The number of bodies, each with six unknowns.
     pub bodies: usize,

@@ -1,16 +1,17 @@
-//! Four problems of the same shape at once, as far as all goes well: see [`crate::sparse::abreast`].
+//! Four or eight problems of the same shape at once, as far as all goes well: see [`crate::sparse::abreast`].
 
 use super::line::state_of;
 use super::{CLEARLY_WRONG, MANY, NOISE, canonical::DEGENERATE};
 use super::{
     PivotingOptions, PivotingReport, PivotingWorkspace, RowState, SparseLcp, WRONG, check, possible,
 };
-use crate::sparse::abreast::{Abreast, Four, Numbers, Task, serves};
+use crate::sparse::abreast::{Abreast, Numbers, Task, serves};
 use crate::sparse::symbolic::Symbolic;
 use crate::sparse::system::{FINE, FIRM, MOST_CORRECTIONS, Pass, ROUGH};
+use ferrode_math::simd::{Block64, EightF64, FourF64};
 
-/// How many problems are solved at once.
-pub const ABREAST: usize = 4;
+/// How many problems are solved at once at the most.
+pub const ABREAST: usize = 8;
 
 /// So often states are corrected, before each problem is left to itself.
 const MOST_ROUNDS: u32 = 4;
@@ -18,14 +19,26 @@ const MOST_ROUNDS: u32 = 4;
 /// Memory for [`solve_abreast`].
 #[derive(Clone, Debug, Default)]
 pub struct AbreastWorkspace {
-    numbers: Abreast,
+    four: Abreast<FourF64>,
+    eight: Abreast<EightF64>,
+    lists: Lists,
+}
+
+/// How many problems this machine's registers hold: four or eight.
+pub fn abreast() -> usize {
+    if EightF64::is_available() { EightF64::LANES } else { FourF64::LANES }
+}
+
+/// What is known of the rows.
+#[derive(Clone, Debug, Default)]
+struct Lists {
     /// The state of each row.
     state: Vec<[RowState; ABREAST]>,
     /// The rows that have a bound in one of the problems, and their blocks.
     bounded: Vec<[u32; 2]>,
 }
 
-/// Solves up to four problems whose rows act on the same bodies in the same order, where that takes few pivots and nothing is amiss. Each
+/// Solves up to [`abreast`] problems whose rows act on the same bodies in the same order, where that takes few pivots and nothing is amiss. Each
 /// answer is, to the bit, that of [`solve_pivoting`](super::solve_pivoting), which is to be asked where there is none. The shape is kept in
 /// `first`, the first problem's workspace.
 pub fn solve_abreast(
@@ -40,7 +53,7 @@ pub fn solve_abreast(
     let alike = |other: &SparseLcp<'_>| {
         other.bodies == p.bodies && other.jacobian.len() == m && other.blocks == p.blocks
     };
-    if others.is_empty() || others.len() >= ABREAST || !others.iter().all(alike) {
+    if others.is_empty() || others.len() >= abreast() || !others.iter().all(alike) {
         return none;
     }
     let sound = |p: &SparseLcp<'_>| check(p).is_ok() && p.findex[..m].iter().all(|f| *f < 0);
@@ -53,17 +66,23 @@ pub fn solve_abreast(
     if !serves(shape) || !problems.iter().all(fits) {
         return none;
     }
-    Together { problems, shape, work: workspace }.run()
+    let AbreastWorkspace { four, eight, lists } = workspace;
+    if problems.len() <= FourF64::LANES {
+        Together { problems, shape, numbers: four, lists }.run()
+    } else {
+        Together { problems, shape, numbers: eight, lists }.run()
+    }
 }
 
 fn numbers<'a>(p: &SparseLcp<'a>) -> Numbers<'a> {
     Numbers::of(p.jacobian, [p.sigma, p.rhs, p.lo, p.hi])
 }
 
-struct Together<'a, 'b> {
+struct Together<'a, 'b, B> {
     problems: &'a mut [SparseLcp<'b>],
     shape: &'a Symbolic,
-    work: &'a mut AbreastWorkspace,
+    numbers: &'a mut Abreast<B>,
+    lists: &'a mut Lists,
 }
 
 /// How far the refinement of one solution has come, as in [`crate::sparse::system::System`].
@@ -74,11 +93,11 @@ struct Refinement {
     scale: f64,
 }
 
-impl Together<'_, '_> {
+impl<B: Block64> Together<'_, '_, B> {
     fn run(mut self) -> [Option<PivotingReport>; ABREAST] {
         self.load();
         self.do_all(Task::Prepare);
-        if !self.work.numbers.used_sigma.as_flattened().iter().all(|sigma| *sigma > 0.0) {
+        if !self.numbers.used_sigma.iter().all(|sigma| sigma.as_ref().iter().all(|x| *x > 0.0)) {
             // Some row is empty.
             return [None; ABREAST];
         }
@@ -97,7 +116,7 @@ impl Together<'_, '_> {
             for l in 0..self.problems.len() {
                 if rounds[l].is_none() && largest[l].is_finite() {
                     let count = self.judge(l, largest[l], CLEARLY_WRONG, false).wrong;
-                    refined[l] = count * MANY < self.work.state.len();
+                    refined[l] = count * MANY < self.lists.state.len();
                     if !refined[l] {
                         self.judge(l, largest[l], CLEARLY_WRONG, true);
                         wrong = true;
@@ -126,7 +145,7 @@ impl Together<'_, '_> {
         if !all_refined {
             self.refine(&mut refinements, ROUGH);
         }
-        let firm = self.work.numbers.hold_firmly(self.problems[0].blocks, self.shape, FIRM);
+        let firm = self.numbers.hold_firmly(self.problems[0].blocks, self.shape, FIRM);
         for (refinement, firm) in refinements.iter_mut().zip(firm) {
             if !firm {
                 // How fast proximal steps converge, the first one does not tell.
@@ -149,7 +168,7 @@ impl Together<'_, '_> {
                 continue;
             }
             reports[l] = Some(report);
-            let answers = self.work.numbers.lambda.iter().zip(&self.work.state);
+            let answers = self.numbers.lambda.iter().zip(&self.lists.state);
             for ((x, states), (lambda, state)) in problem.x.iter_mut().zip(&mut *problem.states).zip(answers)
             {
                 *x = lambda[l];
@@ -159,8 +178,8 @@ impl Together<'_, '_> {
         reports
     }
 
-    fn do_all(&mut self, task: Task) -> [Four; 2] {
-        self.work.numbers.work(self.problems[0].blocks, self.shape, task)
+    fn do_all(&mut self, task: Task) -> [B; 2] {
+        self.numbers.work(self.problems[0].blocks, self.shape, task)
     }
 
     fn load(&mut self) {
@@ -169,14 +188,14 @@ impl Together<'_, '_> {
         for (island, p) in islands.iter_mut().zip(self.problems.iter()) {
             *island = numbers(p);
         }
-        let AbreastWorkspace { numbers, bounded, .. } = &mut *self.work;
+        let (numbers, bounded) = (&mut *self.numbers, &mut self.lists.bounded);
         numbers.load(&islands, self.shape);
         bounded.clear();
         numbers.bounded.clear();
         for (i, block) in p.blocks.iter().enumerate() {
             let has_bound = |row: &u32| {
                 let row = *row as usize;
-                numbers.lo[row] != [f64::NEG_INFINITY; ABREAST] || numbers.hi[row] != [f64::INFINITY; ABREAST]
+                numbers.lo[row] != B::splat(f64::NEG_INFINITY) || numbers.hi[row] != B::splat(f64::INFINITY)
             };
             let rows = (block.first..block.first + block.count).filter(has_bound);
             let before = bounded.len();
@@ -187,12 +206,12 @@ impl Together<'_, '_> {
 
     /// Takes the rows' states as guessed, and the forces of those that are not free.
     fn guess(&mut self) {
-        let AbreastWorkspace { numbers, state, bounded } = &mut *self.work;
+        let (numbers, Lists { state, bounded }) = (&mut *self.numbers, &mut *self.lists);
         state.clear();
         state.resize(numbers.rhs.len(), [RowState::Free; ABREAST]);
         for row in bounded.iter().map(|[row, _]| *row as usize) {
             let (lo, hi) = (numbers.lo[row], numbers.hi[row]);
-            for l in 0..ABREAST {
+            for l in 0..B::LANES {
                 if lo[l] == f64::NEG_INFINITY && hi[l] == f64::INFINITY {
                     continue;
                 }
@@ -208,11 +227,11 @@ impl Together<'_, '_> {
 
     /// Has rows free or at their bounds, as their states say.
     fn hold_states(&mut self) {
-        let AbreastWorkspace { numbers, state, bounded } = &mut *self.work;
+        let (numbers, Lists { state, bounded }) = (&mut *self.numbers, &mut *self.lists);
         numbers.begin();
         for row in bounded.iter().map(|[row, _]| *row as usize) {
             let (lo, hi) = (numbers.lo[row], numbers.hi[row]);
-            for l in 0..ABREAST {
+            for l in 0..B::LANES {
                 numbers.lambda[row][l] = match state[row][l] {
                     RowState::Free => 0.0,
                     RowState::Lower => lo[l],
@@ -225,12 +244,15 @@ impl Together<'_, '_> {
     }
 
     /// The first solution, and the largest forces.
-    fn solve(&mut self) -> (Four, [Refinement; ABREAST]) {
+    fn solve(&mut self) -> (B, [Refinement; ABREAST]) {
         let [change, _] = self.do_all(Task::Correct(Pass::First));
         self.do_all(Task::Apply([true; ABREAST]));
         let [largest, strongest] = self.do_all(Task::Strengths);
-        let of = |l: usize| Refinement { change: change[l], rate: 1.0, scale: strongest[l].sqrt() };
-        (largest, [of(0), of(1), of(2), of(3)])
+        let mut refinements = [Refinement::default(); ABREAST];
+        for (l, refinement) in refinements.iter_mut().enumerate().take(B::LANES) {
+            *refinement = Refinement { change: change[l], rate: 1.0, scale: strongest[l].sqrt() };
+        }
+        (largest, refinements)
     }
 
     /// Corrects until the error to be expected is below that part of the scale, or rounding stops it: each problem as if alone.
@@ -245,9 +267,9 @@ impl Together<'_, '_> {
                 break;
             }
             let [change, _] = self.do_all(Task::Correct(Pass::Own));
-            for ((going, r), change) in going.iter_mut().zip(refinements.iter_mut()).zip(change) {
+            for ((going, r), change) in going.iter_mut().zip(refinements.iter_mut()).zip(change.as_ref()) {
                 if *going {
-                    (r.rate, r.change) = (change / r.change, change);
+                    (r.rate, r.change) = (change / r.change, *change);
                     let falls = r.rate < 0.5;
                     if !falls {
                         // Rounding is all that is left of it.
@@ -262,7 +284,7 @@ impl Together<'_, '_> {
     /// Whether the states of a problem's rows are right, which are wrong if off by more than that part of the largest force; takes better
     /// ones where not, if told to.
     fn judge(&mut self, l: usize, largest: f64, part: f64, correct: bool) -> Judgement {
-        let AbreastWorkspace { numbers: s, state, bounded } = &mut *self.work;
+        let (s, Lists { state, bounded }) = (&*self.numbers, &mut *self.lists);
         let (tolerance, close) = (part * (1.0 + largest), DEGENERATE * (1.0 + largest));
         let mut found = Judgement { wrong: 0, degenerate: false };
         for row in bounded.iter().map(|[row, _]| *row as usize) {

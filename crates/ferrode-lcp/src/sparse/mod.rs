@@ -36,7 +36,7 @@
 //! - `factor`: the numbers, column by column from the left, so that after a change only the columns from the changed ones to the
 //!   root are done again;
 //! - `kernels`: blocks of 3 or 6 rows and columns; `rows`: products with rows;
-//! - `abreast`: the same for four islands of one shape at once.
+//! - `abreast`: the same for several islands of one shape at once.
 //!
 //! (T. Davis, "Direct Methods for Sparse Linear Systems", 2006; D. Baraff, "Linear-time dynamics using Lagrange multipliers",
 //! SIGGRAPH 1996; R. Vanderbei, "Symmetric quasi-definite matrices", SIAM J. Optim. 5, 1995; J. Liu, "The role of elimination trees in sparse factorization", 1990.)

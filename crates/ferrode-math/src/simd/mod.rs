@@ -48,6 +48,7 @@
 #![allow(unsafe_code)]
 
 mod boxes;
+mod lanes64;
 mod level;
 #[cfg(target_arch = "aarch64")]
 mod neon;
@@ -63,12 +64,15 @@ mod wide;
 mod x86;
 
 pub use boxes::overlapping;
+pub use lanes64::{Block64, EightF64, FourF64, Kernel64, Lanes64};
 pub use level::{Level, dispatch, dispatch_at, dispatch_few};
 pub use octet::{Octet, OctetKernel, dispatch_octets};
 pub use ordered::Ordered;
 pub use quad::{Pair, Quad, QuadKernel, dispatch_quads};
 pub use record::{NO_RECORD, Record};
 pub use wide::{Compute, compute_wide};
+
+use quad::Array;
 
 use crate::Scalar;
 use core::cell::Cell;

@@ -75,7 +75,7 @@ pub fn dispatch_quads<K: QuadKernel>(kernel: K) -> K::Out {
 
 /// Quads and pairs as arrays: the fallback, and what the other kind is tested against.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Array<const N: usize>([f64; N]);
+pub(super) struct Array<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Add for Array<N> {
     type Output = Self;

@@ -1,13 +1,16 @@
 //! Lanes of x86-64: SSE2, which every such machine has, AVX2 and AVX-512F.
 //!
-//! The types of AVX2 and AVX-512 are made in `run_avx2`, `run_quads` and `run_avx512` only, which the dispatcher calls after it has found
+//! The types of AVX2 and AVX-512 are made in `run_avx2`, `run_quads`, `run_four`, `run_eight` and `run_avx512` only, which the dispatcher calls after it has found
 //! the instructions on the machine. That is what makes the intrinsics below sound.
 
+mod eight;
 mod ordered;
 
 use super::portable::{Block4, Block8, Block16};
 use super::sealed::Sealed;
-use super::{Compute, Kernel, Lanes, Mask, Pair, Quad, QuadKernel, Record, Work};
+use super::{
+    Compute, EightF64, FourF64, Kernel, Kernel64, Lanes, Lanes64, Mask, Pair, Quad, QuadKernel, Record, Work,
+};
 use crate::Scalar;
 use core::arch::x86_64::*;
 use core::cell::Cell;
@@ -613,6 +616,24 @@ pub(super) unsafe fn run_quads<K: QuadKernel>(kernel: K) -> K::Out {
     kernel.run::<F64x4>()
 }
 
+/// Runs a kernel with four lanes of `f64`.
+///
+/// # Safety
+/// The machine has AVX2.
+#[target_feature(enable = "avx,avx2")]
+pub(super) unsafe fn run_four<K: Kernel64<FourF64>>(kernel: K) -> K::Out {
+    kernel.run::<F64x4>()
+}
+
+/// Runs a kernel with eight lanes of `f64`.
+///
+/// # Safety
+/// The machine has AVX-512F.
+#[target_feature(enable = "avx,avx2,avx512f")]
+pub(super) unsafe fn run_eight<K: Kernel64<EightF64>>(kernel: K) -> K::Out {
+    kernel.run::<eight::F64x8>()
+}
+
 /// Four numbers in a register of AVX2.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
@@ -661,6 +682,28 @@ f64_operators! {
 
 // Each function below that takes no value of the type is called by a kernel that `run_quads` runs, and by nobody else: the types are
 // named in this file only.
+
+impl Lanes64 for F64x4 {
+    type Block = FourF64;
+
+    #[inline(always)]
+    fn load(from: &FourF64) -> Self {
+        // SAFETY: the machine has AVX2; the block holds four numbers, aligned to as many.
+        Self(unsafe { _mm256_load_pd(from.as_ref().as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn store(self, to: &mut FourF64) {
+        // SAFETY: as in `load`.
+        unsafe { _mm256_store_pd(to.as_mut().as_mut_ptr(), self.0) };
+    }
+
+    #[inline(always)]
+    fn splat(x: f64) -> Self {
+        // SAFETY: the machine has AVX2.
+        Self(unsafe { _mm256_set1_pd(x) })
+    }
+}
 
 impl Quad for F64x4 {
     type Pair = F64x2;

@@ -1,9 +1,9 @@
-//! Islands that follow each other and are alike, such as robots of one kind: their rows are solved four at a time.
+//! Islands that follow each other and are alike, such as robots of one kind: their rows are solved four or eight at a time.
 
-use super::{DirectSettings, IslandWork, Problem, Start, Workspace, sparse};
-use ferrode_lcp::{ABREAST, PivotingReport, SparseLcp, solve_abreast};
+use super::{DirectSettings, Island, IslandWork, Problem, Start, Workspace, sparse};
+use ferrode_lcp::{ABREAST, PivotingReport, SparseLcp, abreast, solve_abreast};
 
-/// Fewer take less time one by one: what lanes do takes as long for one island as for four.
+/// Fewer take less time one by one: what lanes do takes as long for one island as for all.
 const LEAST: usize = 3;
 
 /// Finds the forces of islands that follow each other, the first one's number being `number`.
@@ -14,8 +14,12 @@ pub(crate) fn solve_all(
     number: usize,
     past: &Workspace,
 ) {
-    for (i, works) in works.chunks_mut(ABREAST).enumerate() {
-        let problem = Problem { settings, number: number + ABREAST * i, warm: &past.warm };
+    let (mut rest, mut number) = (works, number);
+    while !rest.is_empty() {
+        let (works, others) = rest.split_at_mut(alike(rest));
+        rest = others;
+        let problem = Problem { settings, number, warm: &past.warm };
+        number += works.len();
         works.iter_mut().for_each(|work| work.begin(h));
         let reports = solve_alike(works, problem);
         for (l, (work, report)) in works.iter_mut().zip(reports).enumerate() {
@@ -28,16 +32,20 @@ pub(crate) fn solve_all(
     }
 }
 
+/// How many islands, from the first on, are as large as it, as many as lanes hold.
+fn alike(works: &[IslandWork]) -> usize {
+    let size = |work: &IslandWork| {
+        let Island { bodies, rows, spans, .. } = &work.island;
+        [bodies.len(), rows.len(), spans.len()]
+    };
+    let some = works.iter().take(abreast());
+    some.take_while(|work| works.first().is_some_and(|first| size(work) == size(first))).count()
+}
+
 /// Answers for islands that can be solved together.
 fn solve_alike(works: &mut [IslandWork], problem: Problem<'_>) -> [Option<PivotingReport>; ABREAST] {
     let none = [None; ABREAST];
-    let Some((first, others)) = works.split_first() else { return none };
-    let alike = |other: &IslandWork| {
-        other.island.bodies.len() == first.island.bodies.len()
-            && other.island.rows.len() == first.island.rows.len()
-            && other.island.spans.len() == first.island.spans.len()
-    };
-    if works.len() < LEAST || first.island.rows.is_empty() || !others.iter().all(alike) {
+    if works.len() < LEAST || works.iter().any(|work| work.island.rows.is_empty()) {
         return none;
     }
     let sparse_without_friction = |work: &IslandWork| {
@@ -51,19 +59,17 @@ fn solve_alike(works: &mut [IslandWork], problem: Problem<'_>) -> [Option<Pivoti
         memory.sparse.begin(island, problem, Start::Step);
     }
     let options = sparse::options(problem);
-    let (mut pivoting, mut abreast) = Default::default();
+    let (mut pivoting, mut memory) = Default::default();
     if let Some(first) = works.first_mut() {
-        (pivoting, abreast) = first.memory.sparse.take_memory();
+        (pivoting, memory) = first.memory.sparse.take_memory();
     }
-    let mut solve =
-        |problems: &mut [SparseLcp<'_>]| solve_abreast(problems, &options, &mut pivoting, &mut abreast);
-    let reports = match &mut *works {
-        [a, b, c] => solve(&mut [a.lcp(), b.lcp(), c.lcp()]),
-        [a, b, c, d] => solve(&mut [a.lcp(), b.lcp(), c.lcp(), d.lcp()]),
-        _ => none,
-    };
+    let count = works.len();
+    let mut rest = works.iter_mut();
+    let mut problems: [SparseLcp<'_>; ABREAST] =
+        core::array::from_fn(|_| rest.next().map(IslandWork::lcp).unwrap_or_default());
+    let reports = solve_abreast(&mut problems[..count], &options, &mut pivoting, &mut memory);
     if let Some(first) = works.first_mut() {
-        first.memory.sparse.give_memory(pivoting, abreast);
+        first.memory.sparse.give_memory(pivoting, memory);
     }
     reports
 }

@@ -1,9 +1,8 @@
-//! Small dense blocks of four islands, a quad for each number: the kernels of [`super::super::kernels`] and [`super::super::rows`] once more,
+//! Small dense blocks of several islands, a lane for each: the kernels of [`super::super::kernels`] and [`super::super::rows`] once more,
 //! with the sums in the same order.
 
 use super::super::kernels::stride;
-use super::Four;
-use ferrode_math::simd::Quad;
+use ferrode_math::simd::Lanes64;
 
 // Where a loop's bounds depend on the column, columns are constants to the compiler: only then are sums kept in registers.
 
@@ -22,17 +21,17 @@ macro_rules! each_column {
 }
 
 /// The twelve numbers of a row, six for each of its bodies.
-pub(super) type Row = [Four; 12];
+pub(super) type Row<B> = [B; 12];
 
 /// `a` where `x` is larger than zero, else `b`.
 #[inline(always)]
-pub(super) fn where_positive<Q: Quad>(x: Q, a: Q, b: Q) -> Q {
+pub(super) fn where_positive<Q: Lanes64>(x: Q, a: Q, b: Q) -> Q {
     Q::select(Q::ZERO.lt(x), a, b)
 }
 
 /// `R` numbers of a vector.
 #[inline(always)]
-pub(super) fn load<Q: Quad, const R: usize>(from: &[Four]) -> [Q; R] {
+pub(super) fn load<Q: Lanes64, const R: usize>(from: &[Q::Block]) -> [Q; R] {
     let from = &from[..R];
     let mut out = [Q::splat(0.0); R];
     for r in 0..R {
@@ -42,7 +41,7 @@ pub(super) fn load<Q: Quad, const R: usize>(from: &[Four]) -> [Q; R] {
 }
 
 #[inline(always)]
-pub(super) fn store<Q: Quad, const R: usize>(x: [Q; R], to: &mut [Four]) {
+pub(super) fn store<Q: Lanes64, const R: usize>(x: [Q; R], to: &mut [Q::Block]) {
     let to = &mut to[..R];
     for r in 0..R {
         x[r].store(&mut to[r]);
@@ -51,7 +50,7 @@ pub(super) fn store<Q: Quad, const R: usize>(x: [Q; R], to: &mut [Four]) {
 
 /// `to += x`.
 #[inline(always)]
-pub(super) fn add<Q: Quad, const R: usize>(x: [Q; R], to: &mut [Four]) {
+pub(super) fn add<Q: Lanes64, const R: usize>(x: [Q; R], to: &mut [Q::Block]) {
     let to = &mut to[..R];
     for r in 0..R {
         (Q::load(&to[r]) + x[r]).store(&mut to[r]);
@@ -60,19 +59,19 @@ pub(super) fn add<Q: Quad, const R: usize>(x: [Q; R], to: &mut [Four]) {
 
 /// Even and odd ones apart.
 #[inline(always)]
-fn sum_of_six<Q: Quad>(p: [Q; 6]) -> Q {
+fn sum_of_six<Q: Lanes64>(p: [Q; 6]) -> Q {
     ((p[0] + p[2]) + p[4]) + ((p[1] + p[3]) + p[5])
 }
 
 /// The product of the numbers with that place of a row and of what is there for two bodies.
 #[inline(always)]
-fn term<Q: Quad>(row: &Row, y: &[Q; 12], i: usize) -> Q {
+fn term<Q: Lanes64>(row: &Row<Q::Block>, y: &[Q; 12], i: usize) -> Q {
     Q::load(&row[i]) * y[i]
 }
 
 /// The terms of the product of two rows, or of what is there for two bodies and a row, that are summed at last.
 #[inline(always)]
-pub(super) fn terms<Q: Quad>(row: &Row, y: &[Q; 12], sides: [bool; 2]) -> [Q; 4] {
+pub(super) fn terms<Q: Lanes64>(row: &Row<Q::Block>, y: &[Q; 12], sides: [bool; 2]) -> [Q; 4] {
     let mut terms = [Q::splat(0.0); 4];
     match sides {
         [true, true] => {
@@ -99,19 +98,19 @@ pub(super) fn terms<Q: Quad>(row: &Row, y: &[Q; 12], sides: [bool; 2]) -> [Q; 4]
 
 /// Their sum, in the order of `Quad::sums`.
 #[inline(always)]
-pub(super) fn sum<Q: Quad>(t: [Q; 4]) -> Q {
+pub(super) fn sum<Q: Lanes64>(t: [Q; 4]) -> Q {
     (t[0] + t[1]) + (t[2] + t[3])
 }
 
 /// Their sum, in the order of `Quad::fold` and `Pair::sum`.
 #[inline(always)]
-pub(super) fn folded_sum<Q: Quad>(t: [Q; 4]) -> Q {
+pub(super) fn folded_sum<Q: Lanes64>(t: [Q; 4]) -> Q {
     (t[0] + t[2]) + (t[1] + t[3])
 }
 
 /// `sum += s row`.
 #[inline(always)]
-pub(super) fn plus_row<Q: Quad>(sum: &mut [Q; 12], s: Q, row: &Row) {
+pub(super) fn plus_row<Q: Lanes64>(sum: &mut [Q; 12], s: Q, row: &Row<Q::Block>) {
     for i in 0..12 {
         sum[i] += Q::load(&row[i]) * s;
     }
@@ -119,7 +118,11 @@ pub(super) fn plus_row<Q: Quad>(sum: &mut [Q; 12], s: Q, row: &Row) {
 
 /// `out -= A A^T` for the parts of rows `A` that act on the bodies told by `sides`: the lower triangle; `out` has `H` rows.
 #[inline(always)]
-pub(super) fn sub_square<Q: Quad, const H: usize>(out: &mut [Four], rows: &[Row], sides: [bool; 2]) {
+pub(super) fn sub_square<Q: Lanes64, const H: usize>(
+    out: &mut [Q::Block],
+    rows: &[Row<Q::Block>],
+    sides: [bool; 2],
+) {
     let out = &mut out[..stride(H) * H];
     match sides {
         [true, true] => sub_square_of::<Q, H>(out, rows, [true, true]),
@@ -130,7 +133,7 @@ pub(super) fn sub_square<Q: Quad, const H: usize>(out: &mut [Four], rows: &[Row]
 }
 
 #[inline(always)]
-fn sub_square_of<Q: Quad, const H: usize>(out: &mut [Four], rows: &[Row], sides: [bool; 2]) {
+fn sub_square_of<Q: Lanes64, const H: usize>(out: &mut [Q::Block], rows: &[Row<Q::Block>], sides: [bool; 2]) {
     for (c, with) in rows.iter().take(H).enumerate() {
         let with = load::<Q, 12>(with);
         for (r, row) in rows.iter().take(H).enumerate().skip(c) {
@@ -144,10 +147,10 @@ fn sub_square_of<Q: Quad, const H: usize>(out: &mut [Four], rows: &[Row], sides:
 
 /// `out -= A B^T` for the parts of rows `A` and `B` that act on one body; `out` has `H` rows.
 #[inline(always)]
-pub(super) fn sub_product<Q: Quad, const H: usize>(
-    out: &mut [Four],
-    (a, s): (&[Row], usize),
-    (b, t): (&[Row], usize),
+pub(super) fn sub_product<Q: Lanes64, const H: usize>(
+    out: &mut [Q::Block],
+    (a, s): (&[Row<Q::Block>], usize),
+    (b, t): (&[Row<Q::Block>], usize),
 ) {
     for (out, with) in out.chunks_exact_mut(stride(H)).zip(b) {
         let with = load::<Q, 6>(&with[6 * t..]);
@@ -164,14 +167,22 @@ pub(super) fn sub_product<Q: Quad, const H: usize>(
 
 /// `t -= sign a a^T`, the lower triangle; `t` is R x R, `a` R x D.
 #[inline(always)]
-pub(super) fn sub_aat<Q: Quad, const R: usize, const D: usize>(t: &mut [Four], a: &[Four], sign: f64) {
+pub(super) fn sub_aat<Q: Lanes64, const R: usize, const D: usize>(
+    t: &mut [Q::Block],
+    a: &[Q::Block],
+    sign: f64,
+) {
     let (t, a) = (&mut t[..stride(R) * R], &a[..stride(R) * D]);
     let sign = Q::splat(sign);
     each_column!(R, aat_column, [Q, R, D], (t, a, sign));
 }
 
 #[inline(always)]
-fn aat_column<Q: Quad, const R: usize, const D: usize, const C: usize>(t: &mut [Four], a: &[Four], sign: Q) {
+fn aat_column<Q: Lanes64, const R: usize, const D: usize, const C: usize>(
+    t: &mut [Q::Block],
+    a: &[Q::Block],
+    sign: Q,
+) {
     let with = Q::load(&a[C]);
     let mut sum = [Q::splat(0.0); R];
     for r in C..R {
@@ -191,10 +202,10 @@ fn aat_column<Q: Quad, const R: usize, const D: usize, const C: usize>(t: &mut [
 
 /// `t -= sign a b^T`; `t` is R x C, `a` R x D, `b` C x D.
 #[inline(always)]
-pub(super) fn sub_abt<Q: Quad, const R: usize, const C: usize, const D: usize>(
-    t: &mut [Four],
-    a: &[Four],
-    b: &[Four],
+pub(super) fn sub_abt<Q: Lanes64, const R: usize, const C: usize, const D: usize>(
+    t: &mut [Q::Block],
+    a: &[Q::Block],
+    b: &[Q::Block],
     sign: f64,
 ) {
     let (t, a, b) = (&mut t[..stride(R) * C], &a[..stride(R) * D], &b[..stride(C) * D]);
@@ -221,7 +232,7 @@ pub(super) fn sub_abt<Q: Quad, const R: usize, const C: usize, const D: usize>(
 
 /// `sign h = L L^T` in place, lower triangle; writes the rows of `L^-1`, without the zeros. A pivot that is not positive is replaced by 1.
 #[inline(always)]
-pub(super) fn cholesky<Q: Quad, const N: usize>(h: &mut [Four], inverse: &mut [Four], sign: f64) {
+pub(super) fn cholesky<Q: Lanes64, const N: usize>(h: &mut [Q::Block], inverse: &mut [Q::Block], sign: f64) {
     let (h, inverse) = (&mut h[..stride(N) * N], &mut inverse[..stride(N) * N]);
     let (sign, one) = (Q::splat(sign), Q::splat(1.0));
     let (mut pivots, mut over) = ([one; N], [one; N]);
@@ -231,8 +242,8 @@ pub(super) fn cholesky<Q: Quad, const N: usize>(h: &mut [Four], inverse: &mut [F
 
 /// Column C of `V` in `h = V D^-1 V^T`.
 #[inline(always)]
-fn eliminate<Q: Quad, const N: usize, const C: usize>(
-    h: &mut [Four],
+fn eliminate<Q: Lanes64, const N: usize, const C: usize>(
+    h: &mut [Q::Block],
     pivots: &mut [Q; N],
     over: &mut [Q; N],
     sign: Q,
@@ -257,9 +268,9 @@ fn eliminate<Q: Quad, const N: usize, const C: usize>(
 
 /// Column C of `L`, and row C of its inverse.
 #[inline(always)]
-fn finish<Q: Quad, const N: usize, const C: usize>(
-    h: &mut [Four],
-    inverse: &mut [Four],
+fn finish<Q: Lanes64, const N: usize, const C: usize>(
+    h: &mut [Q::Block],
+    inverse: &mut [Q::Block],
     pivots: &[Q; N],
     over: &[Q; N],
 ) {
@@ -288,20 +299,20 @@ fn finish<Q: Quad, const N: usize, const C: usize>(
 
 /// `x = x L^-T` for a lower triangle and the rows of its inverse, of which the diagonal is read; `x` is R x C.
 #[inline(always)]
-pub(super) fn solve_right<Q: Quad, const R: usize, const C: usize>(
-    x: &mut [Four],
-    l: &[Four],
-    inverse: &[Four],
+pub(super) fn solve_right<Q: Lanes64, const R: usize, const C: usize>(
+    x: &mut [Q::Block],
+    l: &[Q::Block],
+    inverse: &[Q::Block],
 ) {
     let (x, l, inverse) = (&mut x[..stride(R) * C], &l[..stride(C) * C], &inverse[..stride(C) * C]);
     each_column!(C, solve_column, [Q, R, C], (x, l, inverse));
 }
 
 #[inline(always)]
-fn solve_column<Q: Quad, const R: usize, const N: usize, const C: usize>(
-    x: &mut [Four],
-    l: &[Four],
-    inverse: &[Four],
+fn solve_column<Q: Lanes64, const R: usize, const N: usize, const C: usize>(
+    x: &mut [Q::Block],
+    l: &[Q::Block],
+    inverse: &[Q::Block],
 ) {
     let mut column = load::<Q, R>(&x[stride(R) * C..]);
     for q in 0..C {
@@ -319,9 +330,9 @@ fn solve_column<Q: Quad, const R: usize, const N: usize, const C: usize>(
 
 /// `y -= sign b x`; `b` is R x C.
 #[inline(always)]
-pub(super) fn sub_mul<Q: Quad, const R: usize, const C: usize>(
-    y: &mut [Four],
-    b: &[Four],
+pub(super) fn sub_mul<Q: Lanes64, const R: usize, const C: usize>(
+    y: &mut [Q::Block],
+    b: &[Q::Block],
     x: &[Q; C],
     sign: f64,
 ) {
@@ -348,10 +359,10 @@ pub(super) fn sub_mul<Q: Quad, const R: usize, const C: usize>(
 
 /// `y -= b^T x`; `b` is C x R.
 #[inline(always)]
-pub(super) fn sub_transposed<Q: Quad, const R: usize, const C: usize>(
+pub(super) fn sub_transposed<Q: Lanes64, const R: usize, const C: usize>(
     y: &mut [Q; R],
-    b: &[Four],
-    x: &[Four],
+    b: &[Q::Block],
+    x: &[Q::Block],
 ) {
     let (b, x) = (&b[..stride(C) * R], load::<Q, C>(x));
     for r in 0..R {
@@ -366,7 +377,7 @@ pub(super) fn sub_transposed<Q: Quad, const R: usize, const C: usize>(
 
 /// `x = L^-1 x`, given the rows of the inverse.
 #[inline(always)]
-pub(super) fn forward<Q: Quad, const N: usize>(inverse: &[Four], x: [Q; N]) -> [Q; N] {
+pub(super) fn forward<Q: Lanes64, const N: usize>(inverse: &[Q::Block], x: [Q; N]) -> [Q; N] {
     let inverse = &inverse[..stride(N) * N];
     let mut out = x;
     each_column!(N, forward_row, [Q, N], (inverse, &x, &mut out));
@@ -374,7 +385,11 @@ pub(super) fn forward<Q: Quad, const N: usize>(inverse: &[Four], x: [Q; N]) -> [
 }
 
 #[inline(always)]
-fn forward_row<Q: Quad, const N: usize, const R: usize>(inverse: &[Four], x: &[Q; N], out: &mut [Q; N]) {
+fn forward_row<Q: Lanes64, const N: usize, const R: usize>(
+    inverse: &[Q::Block],
+    x: &[Q; N],
+    out: &mut [Q; N],
+) {
     let mut p = [Q::splat(0.0); 6];
     for c in 0..R + 1 {
         p[c] = Q::load(&inverse[stride(N) * R + c]) * x[c];
@@ -384,7 +399,7 @@ fn forward_row<Q: Quad, const N: usize, const R: usize>(inverse: &[Four], x: &[Q
 
 /// `x = L^-T x`, given the rows of the inverse.
 #[inline(always)]
-pub(super) fn back<Q: Quad, const N: usize>(inverse: &[Four], x: [Q; N]) -> [Q; N] {
+pub(super) fn back<Q: Lanes64, const N: usize>(inverse: &[Q::Block], x: [Q; N]) -> [Q; N] {
     let inverse = &inverse[..stride(N) * N];
     let mut out = x;
     each_column!(N, back_row, [Q, N], (inverse, &x, &mut out));
@@ -392,7 +407,7 @@ pub(super) fn back<Q: Quad, const N: usize>(inverse: &[Four], x: [Q; N]) -> [Q; 
 }
 
 #[inline(always)]
-fn back_row<Q: Quad, const N: usize, const R: usize>(inverse: &[Four], x: &[Q; N], out: &mut [Q; N]) {
+fn back_row<Q: Lanes64, const N: usize, const R: usize>(inverse: &[Q::Block], x: &[Q; N], out: &mut [Q; N]) {
     let mut p = [Q::splat(0.0); 6];
     for c in R..N {
         p[c] = Q::load(&inverse[stride(N) * c + R]) * x[c];

@@ -1,19 +1,19 @@
-//! The factor of four islands: [`super::super::factor`] and [`super::super::matrix`] with a quad for each number.
+//! The factor of several islands: [`super::super::factor`] and [`super::super::matrix`] with lanes for each number.
 
 use super::super::kernels::{by_sizes, stride};
 use super::super::symbolic::{Head, NONE, Place, Symbolic};
 use super::super::{NO_SPARSE_BODY, RowBlock};
+use super::Abreast;
 use super::blocks::{
     Row, back, cholesky, forward, load, solve_right, store, sub_aat, sub_abt, sub_mul, sub_product,
     sub_square, sub_transposed, where_positive,
 };
-use super::{Abreast, Four};
-use ferrode_math::simd::Quad;
+use ferrode_math::simd::{Block64, Lanes64};
 
 /// Numbers laid out as the shape says.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Factor {
-    pub values: Vec<Four>,
+pub(super) struct Factor<B> {
+    pub values: Vec<B>,
     /// Per block below the diagonal whether it is written for the first time by a coupling yet to come.
     written: Vec<bool>,
     /// For each row where the block of the present column is, counted from the column's start.
@@ -21,15 +21,21 @@ pub(super) struct Factor {
 }
 
 /// The rows of a block without those that have no weight in an island.
-struct Masked([Row; 6]);
+struct Masked<B>([Row<B>; 6]);
 
-impl Masked {
-    const fn new() -> Self {
-        Self([[[0.0; 4]; 12]; 6])
+impl<B: Block64> Masked<B> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self([[B::splat(0.0); 12]; 6])
     }
 
     #[inline(always)]
-    fn of<'a, Q: Quad>(&'a mut self, all: &'a Abreast, block: &RowBlock, whole: bool) -> &'a [Row] {
+    fn of<'a, Q: Lanes64<Block = B>>(
+        &'a mut self,
+        all: &'a Abreast<B>,
+        block: &RowBlock,
+        whole: bool,
+    ) -> &'a [Row<B>] {
         let range = block.range();
         let rows = &all.jacobian[range.clone()];
         if whole {
@@ -48,9 +54,9 @@ impl Masked {
 
 /// Puts the rows into the matrix.
 #[inline(always)]
-pub(super) fn assemble<Q: Quad>(all: &mut Abreast, blocks: &[RowBlock], shape: &Symbolic) {
+pub(super) fn assemble<Q: Lanes64>(all: &mut Abreast<Q::Block>, blocks: &[RowBlock], shape: &Symbolic) {
     let Factor { mut values, mut written, position } = core::mem::take(&mut all.factor);
-    values.resize(shape.numbers(), [0.0; 4]);
+    values.resize(shape.numbers(), Q::Block::splat(0.0));
     written.clear();
     written.resize(shape.row.len(), false);
     for coupling in &shape.couplings {
@@ -66,7 +72,7 @@ pub(super) fn assemble<Q: Quad>(all: &mut Abreast, blocks: &[RowBlock], shape: &
         let rows = shape.at[below.clone()].iter().zip(&shape.row[below.clone()]);
         for ((at, row), _) in rows.zip(&written[below]).filter(|(_, written)| !**written) {
             let (at, height) = (*at as usize, usize::from(shape.size[*row as usize]));
-            values[at..at + stride(height) * width].fill([0.0; 4]);
+            values[at..at + stride(height) * width].fill(Q::Block::splat(0.0));
         }
     }
     let (mut masked, mut other) = (Masked::new(), Masked::new());
@@ -82,7 +88,7 @@ pub(super) fn assemble<Q: Quad>(all: &mut Abreast, blocks: &[RowBlock], shape: &
         let at = shape.at[coupling.at as usize] as usize;
         let out = &mut values[at..at + stride(usize::from(height)) * width];
         if first {
-            out.fill([0.0; 4]);
+            out.fill(Q::Block::splat(0.0));
         }
         let rows = masked.of::<Q>(all, &blocks[later], all.whole[later]);
         let cols = other.of::<Q>(all, &blocks[earlier], all.whole[earlier]);
@@ -94,18 +100,18 @@ pub(super) fn assemble<Q: Quad>(all: &mut Abreast, blocks: &[RowBlock], shape: &
 
 /// The unit matrix with that sign.
 #[inline(always)]
-fn clear_diagonal(block: &mut [Four], width: usize, sign: f64) {
-    block[..stride(width) * width].fill([0.0; 4]);
+fn clear_diagonal<B: Block64>(block: &mut [B], width: usize, sign: f64) {
+    block[..stride(width) * width].fill(B::splat(0.0));
     for i in 0..width {
-        block[(stride(width) + 1) * i] = [sign; 4];
+        block[(stride(width) + 1) * i] = B::splat(sign);
     }
 }
 
 /// `-S` of a joint, `J` between it and its bodies; of light bodies, which are eliminated already, `-J J^T`.
 #[inline(always)]
-fn add_joint<Q: Quad>(
-    values: &mut [Four],
-    (rows, weight): (&[Row], &[Four]),
+fn add_joint<Q: Lanes64>(
+    values: &mut [Q::Block],
+    (rows, weight): (&[Row<Q::Block>], &[Q::Block]),
     block: &RowBlock,
     place: &Place,
     shape: &Symbolic,
@@ -147,10 +153,10 @@ pub(super) fn light_sides(block: &RowBlock, place: &Place) -> [bool; 2] {
     ]
 }
 
-impl Factor {
+impl<B: Block64> Factor<B> {
     /// Factors what was assembled.
     #[inline(always)]
-    pub fn factorise<Q: Quad>(&mut self, shape: &Symbolic) {
+    pub fn factorise<Q: Lanes64<Block = B>>(&mut self, shape: &Symbolic) {
         self.position.resize(shape.columns(), NONE);
         for c in 0..shape.columns() {
             let range = shape.column_start[c] as usize..shape.column_start[c + 1] as usize;
@@ -190,7 +196,7 @@ impl Factor {
 
     /// `x = K^-1 x`, `x` by columns.
     #[inline(always)]
-    pub fn solve<Q: Quad>(&self, shape: &Symbolic, x: &mut [Four]) {
+    pub fn solve<Q: Lanes64<Block = B>>(&self, shape: &Symbolic, x: &mut [B]) {
         for head in &shape.heads {
             let values = &self.values[head.start as usize..];
             by_sizes!(go_forward, Q, [head.width], (head, shape, values, x));
@@ -204,7 +210,12 @@ impl Factor {
 
 /// `x_c = L_cc^-1 x_c`, and takes it off the unknowns below.
 #[inline(always)]
-fn go_forward<Q: Quad, const N: usize>(head: &Head, shape: &Symbolic, values: &[Four], x: &mut [Four]) {
+fn go_forward<Q: Lanes64, const N: usize>(
+    head: &Head,
+    shape: &Symbolic,
+    values: &[Q::Block],
+    x: &mut [Q::Block],
+) {
     let square = N * stride(N);
     let (inverse, mut rest) = values[square..].split_at(square);
     let own = &mut x[head.offset as usize..];
@@ -223,7 +234,12 @@ fn go_forward<Q: Quad, const N: usize>(head: &Head, shape: &Symbolic, values: &[
 
 /// Takes the unknowns below off `x_c`, and `x_c = d_c L_cc^-T x_c`.
 #[inline(always)]
-fn go_back<Q: Quad, const N: usize>(head: &Head, shape: &Symbolic, values: &[Four], x: &mut [Four]) {
+fn go_back<Q: Lanes64, const N: usize>(
+    head: &Head,
+    shape: &Symbolic,
+    values: &[Q::Block],
+    x: &mut [Q::Block],
+) {
     let square = N * stride(N);
     let (inverse, mut rest) = values[square..].split_at(square);
     let mut sum = load::<Q, N>(&x[head.offset as usize..]);

@@ -1,4 +1,4 @@
-//! Solves of four islands with the rows of given sets held exactly: [`super::super::system`] with a quad for each number.
+//! Solves of several islands with the rows of given sets held exactly: [`super::super::system`] with lanes for each number.
 
 use super::super::RowBlock;
 use super::super::kernels::stride;
@@ -6,8 +6,8 @@ use super::super::symbolic::{NONE, Symbolic};
 use super::super::system::{LEAST_SIGMA, Pass};
 use super::blocks::{Row, add, folded_sum, load, plus_row, store, sum, terms, where_positive};
 use super::factor::{assemble, light_sides};
-use super::{Abreast, Four};
-use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
+use super::{ABREAST, Abreast};
+use ferrode_math::simd::{Block64, Kernel64, Lanes64};
 
 /// What is to be done, with the machine's instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub(crate) enum Task {
     /// Finds a correction; the answer is the largest change of an acceleration.
     Correct(Pass),
     /// Makes the correction that was found last, where `true`.
-    Apply([bool; 4]),
+    Apply([bool; ABREAST]),
     /// Nothing is changed; the answer is the largest force, and the square of what the force that does most does to its row.
     Strengths,
     /// Sets `jy` to `J y` in the blocks that have a row with a bound.
@@ -29,18 +29,18 @@ pub(crate) enum Task {
     Measure,
 }
 
-struct Work<'a> {
-    all: &'a mut Abreast,
+struct Work<'a, B> {
+    all: &'a mut Abreast<B>,
     blocks: &'a [RowBlock],
     shape: &'a Symbolic,
     task: Task,
 }
 
-impl QuadKernel for Work<'_> {
-    type Out = [Four; 2];
+impl<B: Block64> Kernel64<B> for Work<'_, B> {
+    type Out = [B; 2];
 
     #[inline(always)]
-    fn run<Q: Quad>(self) -> [Four; 2] {
+    fn run<Q: Lanes64<Block = B>>(self) -> [B; 2] {
         let Self { all, blocks, shape, task } = self;
         match task {
             Task::Prepare => all.prepare::<Q>(),
@@ -48,7 +48,7 @@ impl QuadKernel for Work<'_> {
                 assemble::<Q>(all, blocks, shape);
                 all.factor.factorise::<Q>(shape);
             }
-            Task::Correct(pass) => return [all.correct::<Q>(blocks, shape, pass), [0.0; 4]],
+            Task::Correct(pass) => return [all.correct::<Q>(blocks, shape, pass), B::splat(0.0)],
             Task::Apply(to) => all.apply::<Q>(to),
             Task::Strengths => return all.strengths::<Q>(),
             Task::Product => {
@@ -60,13 +60,13 @@ impl QuadKernel for Work<'_> {
             }
             Task::Measure => return all.measure::<Q>(blocks),
         }
-        [[0.0; 4]; 2]
+        [B::splat(0.0); 2]
     }
 }
 
 /// What `y` holds for two bodies; zero where there is none.
 #[inline(always)]
-fn of_bodies<Q: Quad>(y: &[[Four; 6]], bodies: [u32; 2]) -> [Q; 12] {
+fn of_bodies<Q: Lanes64>(y: &[[Q::Block; 6]], bodies: [u32; 2]) -> [Q; 12] {
     let mut out = [Q::splat(0.0); 12];
     for s in 0..2 {
         if let Some(y) = y.get(bodies[s] as usize) {
@@ -80,7 +80,12 @@ fn of_bodies<Q: Quad>(y: &[[Four; 6]], bodies: [u32; 2]) -> [Q; 12] {
 
 /// `J y` of a block of rows.
 #[inline(always)]
-fn product<Q: Quad>(jacobian: &[Row], block: &RowBlock, y: &[[Four; 6]], out: &mut [Four]) {
+fn product<Q: Lanes64>(
+    jacobian: &[Row<Q::Block>],
+    block: &RowBlock,
+    y: &[[Q::Block; 6]],
+    out: &mut [Q::Block],
+) {
     let (range, y) = (block.range(), of_bodies::<Q>(y, block.bodies));
     for (row, out) in jacobian[range.clone()].iter().zip(&mut out[range]) {
         sum(terms(row, &y, [true; 2])).store(out);
@@ -89,7 +94,7 @@ fn product<Q: Quad>(jacobian: &[Row], block: &RowBlock, y: &[[Four; 6]], out: &m
 
 /// Adds to what `y` holds for two bodies, where they are.
 #[inline(always)]
-fn add_to_bodies<Q: Quad>(x: [Q; 12], y: &mut [[Four; 6]], bodies: [u32; 2]) {
+fn add_to_bodies<Q: Lanes64>(x: [Q; 12], y: &mut [[Q::Block; 6]], bodies: [u32; 2]) {
     let [a, b, c, d, e, f, g, h, i, j, k, l] = x;
     if let Some(y) = y.get_mut(bodies[0] as usize) {
         add([a, b, c, d, e, f], y);
@@ -106,7 +111,7 @@ struct Largest<Q> {
     total: Q,
 }
 
-impl<Q: Quad> Largest<Q> {
+impl<Q: Lanes64> Largest<Q> {
     #[inline(always)]
     fn new() -> Self {
         Self { most: Q::splat(0.0), total: Q::splat(0.0) }
@@ -125,11 +130,11 @@ impl<Q: Quad> Largest<Q> {
     }
 
     #[inline(always)]
-    fn get(self) -> Four {
-        let (mut most, mut total) = ([0.0; 4], [0.0; 4]);
+    fn get(self) -> Q::Block {
+        let (mut most, mut total) = (Q::Block::default(), Q::Block::default());
         self.most.store(&mut most);
         self.total.store(&mut total);
-        for l in 0..4 {
+        for l in 0..Q::Block::LANES {
             if total[l].is_nan() {
                 most[l] = total[l];
             }
@@ -140,18 +145,19 @@ impl<Q: Quad> Largest<Q> {
 
 /// The nearest number within bounds.
 #[inline(always)]
-fn within<Q: Quad>(x: Q, (lo, hi): (&Four, &Four)) -> Q {
+fn within<Q: Lanes64>(x: Q, (lo, hi): (&Q::Block, &Q::Block)) -> Q {
     let (x, hi) = (x.greater(Q::load(lo)), Q::load(hi));
     where_positive(x - hi, hi, x)
 }
 
-impl Abreast {
-    pub fn work(&mut self, blocks: &[RowBlock], shape: &Symbolic, task: Task) -> [Four; 2] {
-        dispatch_quads(Work { all: self, blocks, shape, task })
+impl<B: Block64> Abreast<B> {
+    /// Not a number where the machine has no lanes of the kind.
+    pub fn work(&mut self, blocks: &[RowBlock], shape: &Symbolic, task: Task) -> [B; 2] {
+        B::dispatch(Work { all: self, blocks, shape, task }).unwrap_or([B::splat(f64::NAN); 2])
     }
 
     #[inline(always)]
-    fn prepare<Q: Quad>(&mut self) {
+    fn prepare<Q: Lanes64<Block = B>>(&mut self) {
         let (zero, one, least) = (Q::splat(0.0), Q::splat(1.0), Q::splat(LEAST_SIGMA));
         for (row, jacobian) in self.jacobian.iter().enumerate() {
             let sigma = Q::load(&self.sigma[row]);
@@ -166,7 +172,7 @@ impl Abreast {
     }
 
     #[inline(always)]
-    fn strengths<Q: Quad>(&self) -> [Four; 2] {
+    fn strengths<Q: Lanes64<Block = B>>(&self) -> [B; 2] {
         let (mut largest, mut strongest) = (Largest::<Q>::new(), Largest::<Q>::new());
         for (lambda, diagonal) in self.lambda.iter().zip(&self.diagonal) {
             let lambda = Q::load(lambda);
@@ -177,14 +183,14 @@ impl Abreast {
     }
 
     #[inline(always)]
-    fn measure<Q: Quad>(&mut self, blocks: &[RowBlock]) -> [Four; 2] {
+    fn measure<Q: Lanes64<Block = B>>(&mut self, blocks: &[RowBlock]) -> [B; 2] {
         let mut largest = Largest::<Q>::new();
         for (lambda, bounds) in self.lambda.iter_mut().zip(self.lo.iter().zip(&self.hi)) {
             let x = within(Q::load(lambda), bounds);
             x.store(lambda);
             largest.take(x);
         }
-        self.y.fill([[0.0; 4]; 6]);
+        self.y.fill([B::splat(0.0); 6]);
         for block in blocks {
             let range = block.range();
             let mut sum = [Q::splat(0.0); 12];
@@ -207,8 +213,12 @@ impl Abreast {
     }
 
     #[inline(always)]
-    fn apply<Q: Quad>(&mut self, to: [bool; 4]) {
-        let to = Q::load(&[f64::from(to[0]), f64::from(to[1]), f64::from(to[2]), f64::from(to[3])]);
+    fn apply<Q: Lanes64<Block = B>>(&mut self, to: [bool; ABREAST]) {
+        let mut block = B::default();
+        for l in 0..B::LANES {
+            block[l] = f64::from(to[l]);
+        }
+        let to = Q::load(&block);
         for (y, dy) in self.y.as_flattened_mut().iter_mut().zip(self.dy.as_flattened()) {
             let before = Q::load(y);
             where_positive(to, before + Q::load(dy), before).store(y);
@@ -221,7 +231,7 @@ impl Abreast {
 
     /// Finds one correction. Returns the largest change of an acceleration; not a number if one is not.
     #[inline(always)]
-    fn correct<Q: Quad>(&mut self, blocks: &[RowBlock], shape: &Symbolic, pass: Pass) -> Four {
+    fn correct<Q: Lanes64<Block = B>>(&mut self, blocks: &[RowBlock], shape: &Symbolic, pass: Pass) -> B {
         let (first, zero) = (pass == Pass::First, Q::splat(0.0));
         let sigma = if pass == Pass::Own { &self.sigma } else { &self.used_sigma };
         for (dy, y) in self.dy.as_flattened_mut().iter_mut().zip(self.y.as_flattened()) {
@@ -264,7 +274,12 @@ impl Abreast {
     /// Solves with the factor: `dy` holds the right-hand side of the bodies and becomes their part of the solution, `dlambda` that of
     /// the rows.
     #[inline(always)]
-    fn solve_factored<Q: Quad>(&mut self, blocks: &[RowBlock], shape: &Symbolic, at_rest: bool) {
+    fn solve_factored<Q: Lanes64<Block = B>>(
+        &mut self,
+        blocks: &[RowBlock],
+        shape: &Symbolic,
+        at_rest: bool,
+    ) {
         let zero = Q::splat(0.0);
         let mut z = core::mem::take(&mut self.z);
         for (dy, column) in self.dy.iter().zip(&shape.body_column) {
@@ -287,7 +302,7 @@ impl Abreast {
                     where_positive(Q::load(&self.weight[row]), right, zero).store(z);
                 }
             }
-            z[count..].fill([0.0; 4]);
+            z[count..].fill(B::splat(0.0));
         }
         self.factor.solve::<Q>(shape, &mut z);
         for (dy, column) in self.dy.iter_mut().zip(&shape.body_column) {
@@ -317,8 +332,8 @@ impl Abreast {
     }
 
     /// Whether the pivot of each raised row is so large that what its CFM was raised by hardly matters: `System::holds_firmly`.
-    pub fn hold_firmly(&self, blocks: &[RowBlock], shape: &Symbolic, firm: f64) -> [bool; 4] {
-        let mut holds = [true; 4];
+    pub fn hold_firmly(&self, blocks: &[RowBlock], shape: &Symbolic, firm: f64) -> [bool; ABREAST] {
+        let mut holds = [true; ABREAST];
         if !self.raised {
             return holds;
         }
@@ -327,7 +342,7 @@ impl Abreast {
             let step = stride(usize::from(shape.size[own])) + 1;
             let roots = self.factor.values[shape.start[own] as usize..].iter().step_by(step);
             for (row, root) in block.range().zip(roots) {
-                for l in 0..4 {
+                for l in 0..B::LANES {
                     let used = self.used_sigma[row][l];
                     let raised = self.sigma[row][l] != used && self.weight[row][l] != 0.0;
                     holds[l] &= !raised || firm * used <= root[l] * root[l];
