@@ -21,21 +21,13 @@ const MOST_ROUNDS: u32 = 4;
 pub struct AbreastWorkspace {
     four: Abreast<FourF64>,
     eight: Abreast<EightF64>,
-    lists: Lists,
+    /// The state of each row that has a bound in one of the problems.
+    state: Vec<[RowState; ABREAST]>,
 }
 
 /// How many problems this machine's registers hold: four or eight.
 pub fn abreast() -> usize {
     if EightF64::is_available() { EightF64::LANES } else { FourF64::LANES }
-}
-
-/// What is known of the rows.
-#[derive(Clone, Debug, Default)]
-struct Lists {
-    /// The state of each row.
-    state: Vec<[RowState; ABREAST]>,
-    /// The rows that have a bound in one of the problems, and their blocks.
-    bounded: Vec<[u32; 2]>,
 }
 
 /// Solves up to [`abreast`] problems whose rows act on the same bodies in the same order, where that takes few pivots and nothing is amiss. Each
@@ -66,11 +58,11 @@ pub fn solve_abreast(
     if !serves(shape) || !problems.iter().all(fits) {
         return none;
     }
-    let AbreastWorkspace { four, eight, lists } = workspace;
+    let AbreastWorkspace { four, eight, state } = workspace;
     if problems.len() <= FourF64::LANES {
-        Together { problems, shape, numbers: four, lists }.run()
+        Together { problems, shape, numbers: four, state }.run()
     } else {
-        Together { problems, shape, numbers: eight, lists }.run()
+        Together { problems, shape, numbers: eight, state }.run()
     }
 }
 
@@ -82,7 +74,8 @@ struct Together<'a, 'b, B> {
     problems: &'a mut [SparseLcp<'b>],
     shape: &'a Symbolic,
     numbers: &'a mut Abreast<B>,
-    lists: &'a mut Lists,
+    /// Of the rows in `numbers.bounded`; all others are free.
+    state: &'a mut Vec<[RowState; ABREAST]>,
 }
 
 /// How far the refinement of one solution has come, as in [`crate::sparse::system::System`].
@@ -116,7 +109,7 @@ impl<B: Block64> Together<'_, '_, B> {
             for l in 0..self.problems.len() {
                 if rounds[l].is_none() && largest[l].is_finite() {
                     let count = self.judge(l, largest[l], CLEARLY_WRONG, false).wrong;
-                    refined[l] = count * MANY < self.lists.state.len();
+                    refined[l] = count * MANY < self.numbers.rhs.len();
                     if !refined[l] {
                         self.judge(l, largest[l], CLEARLY_WRONG, true);
                         wrong = true;
@@ -145,9 +138,9 @@ impl<B: Block64> Together<'_, '_, B> {
         if !all_refined {
             self.refine(&mut refinements, ROUGH);
         }
-        let firm = self.numbers.hold_firmly(self.problems[0].blocks, self.shape, FIRM);
-        for (refinement, firm) in refinements.iter_mut().zip(firm) {
-            if !firm {
+        let [loose, _] = self.do_all(Task::Loose(FIRM));
+        for (refinement, loose) in refinements.iter_mut().zip(loose.as_ref()) {
+            if *loose > 0.0 {
                 // How fast proximal steps converge, the first one does not tell.
                 refinement.rate = 1.0;
             }
@@ -168,11 +161,13 @@ impl<B: Block64> Together<'_, '_, B> {
                 continue;
             }
             reports[l] = Some(report);
-            let answers = self.numbers.lambda.iter().zip(&self.lists.state);
-            for ((x, states), (lambda, state)) in problem.x.iter_mut().zip(&mut *problem.states).zip(answers)
+            for ((x, states), lambda) in
+                problem.x.iter_mut().zip(&mut *problem.states).zip(&self.numbers.lambda)
             {
-                *x = lambda[l];
-                *states = [Some(state[l]); 2];
+                (*x, *states) = (lambda[l], [Some(RowState::Free); 2]);
+            }
+            for ([row, _], state) in self.numbers.bounded.iter().zip(&*self.state) {
+                problem.states[*row as usize] = [Some(state[l]); 2];
             }
         }
         reports
@@ -188,59 +183,45 @@ impl<B: Block64> Together<'_, '_, B> {
         for (island, p) in islands.iter_mut().zip(self.problems.iter()) {
             *island = numbers(p);
         }
-        let (numbers, bounded) = (&mut *self.numbers, &mut self.lists.bounded);
+        let numbers = &mut *self.numbers;
         numbers.load(&islands, self.shape);
-        bounded.clear();
         numbers.bounded.clear();
         for (i, block) in p.blocks.iter().enumerate() {
-            let has_bound = |row: &u32| {
-                let row = *row as usize;
-                numbers.lo[row] != B::splat(f64::NEG_INFINITY) || numbers.hi[row] != B::splat(f64::INFINITY)
-            };
-            let rows = (block.first..block.first + block.count).filter(has_bound);
-            let before = bounded.len();
-            bounded.extend(rows.map(|row| [row, i as u32]));
-            numbers.bounded.push(bounded.len() > before);
+            for row in block.first..block.first + block.count {
+                let bounds = (numbers.lo[row as usize], numbers.hi[row as usize]);
+                if bounds != (B::splat(f64::NEG_INFINITY), B::splat(f64::INFINITY)) {
+                    numbers.bounded.push([row, i as u32]);
+                }
+            }
         }
     }
 
     /// Takes the rows' states as guessed, and the forces of those that are not free.
     fn guess(&mut self) {
-        let (numbers, Lists { state, bounded }) = (&mut *self.numbers, &mut *self.lists);
+        let Self { problems, numbers, state, .. } = self;
         state.clear();
-        state.resize(numbers.rhs.len(), [RowState::Free; ABREAST]);
-        for row in bounded.iter().map(|[row, _]| *row as usize) {
+        for row in numbers.bounded.iter().map(|[row, _]| *row as usize) {
             let (lo, hi) = (numbers.lo[row], numbers.hi[row]);
-            for l in 0..B::LANES {
+            let mut states = [RowState::Free; ABREAST];
+            for (l, state) in states.iter_mut().enumerate().take(B::LANES) {
                 if lo[l] == f64::NEG_INFINITY && hi[l] == f64::INFINITY {
                     continue;
                 }
-                let p = self.problems.get(l).unwrap_or(&self.problems[0]);
+                let p = problems.get(l).unwrap_or(&problems[0]);
                 let guess = p.states[row][1].unwrap_or_else(|| {
                     let alone = numbers.rhs[row][l] / numbers.diagonal[row][l];
                     if alone == 0.0 { RowState::Free } else { state_of(alone, lo[l], hi[l]) }
                 });
-                state[row][l] = possible(guess, lo[l], hi[l]);
+                *state = possible(guess, lo[l], hi[l]);
             }
+            state.push(states);
         }
     }
 
     /// Has rows free or at their bounds, as their states say.
     fn hold_states(&mut self) {
-        let (numbers, Lists { state, bounded }) = (&mut *self.numbers, &mut *self.lists);
-        numbers.begin();
-        for row in bounded.iter().map(|[row, _]| *row as usize) {
-            let (lo, hi) = (numbers.lo[row], numbers.hi[row]);
-            for l in 0..B::LANES {
-                numbers.lambda[row][l] = match state[row][l] {
-                    RowState::Free => 0.0,
-                    RowState::Lower => lo[l],
-                    RowState::Upper => hi[l],
-                };
-            }
-        }
-        let given = |row: &[u32; 2]| (*row, state[row[0] as usize].map(|state| state != RowState::Free));
-        numbers.hold(bounded.iter().map(given));
+        self.numbers.begin();
+        self.numbers.hold(self.state);
     }
 
     /// The first solution, and the largest forces.
@@ -284,15 +265,16 @@ impl<B: Block64> Together<'_, '_, B> {
     /// Whether the states of a problem's rows are right, which are wrong if off by more than that part of the largest force; takes better
     /// ones where not, if told to.
     fn judge(&mut self, l: usize, largest: f64, part: f64, correct: bool) -> Judgement {
-        let (s, Lists { state, bounded }) = (&*self.numbers, &mut *self.lists);
+        let s = &*self.numbers;
         let (tolerance, close) = (part * (1.0 + largest), DEGENERATE * (1.0 + largest));
         let mut found = Judgement { wrong: 0, degenerate: false };
-        for row in bounded.iter().map(|[row, _]| *row as usize) {
+        for ([row, _], states) in s.bounded.iter().zip(&mut *self.state) {
+            let row = *row as usize;
             let (lo, hi) = (s.lo[row][l], s.hi[row][l]);
             let (lambda, rhs) = (s.lambda[row][l], s.rhs[row][l]);
             let slack = s.jy[row][l] + s.sigma[row][l] * lambda - rhs;
             let least = tolerance * s.diagonal[row][l] + NOISE * rhs.abs();
-            let state = &mut state[row][l];
+            let state = &mut states[l];
             let better = match *state {
                 RowState::Free if lambda < lo - tolerance => RowState::Lower,
                 RowState::Free if lambda > hi + tolerance => RowState::Upper,

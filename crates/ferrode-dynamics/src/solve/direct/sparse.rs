@@ -3,9 +3,8 @@
 //! With M⁻¹ = C Cᵀ per body (C: the root of the inverse mass, and the Cholesky factor of the inverse inertia) a row's Jacobian becomes J C.
 
 use super::twelve::Root;
-use super::warm::{Expected, Key, WarmStart};
+use super::warm::{Name, WarmStart};
 use super::{DirectSettings, Problem, RowSystem, Start};
-use crate::arena::NIL;
 use crate::report::{DirectMethod, IslandSolve};
 use crate::rows::RowKind;
 use crate::solve::Solved;
@@ -14,8 +13,8 @@ use ferrode_lcp::{
     AbreastWorkspace, NO_SPARSE_BODY, PivotingOptions, PivotingReport, PivotingWorkspace, RowBlock, RowState,
     ScaledRow, SparseLcp, solve_pivoting,
 };
+use ferrode_math::Mat3;
 use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
-use ferrode_math::{Mat3, Vec3};
 
 /// Memory of the method.
 #[derive(Clone, Debug, Default)]
@@ -26,10 +25,9 @@ pub(super) struct Workspace {
     jacobian: Vec<ScaledRow>,
     states: Vec<[Option<RowState>; 2]>,
     pivoting: PivotingWorkspace,
-    /// What names the rows of each span, if that was asked.
-    keys: Vec<Option<(Key, Vec3)>>,
+    /// What names the rows of each span, if that was asked; none if none of the rows has a bound.
+    names: Vec<Option<Name>>,
     abreast: AbreastWorkspace,
-    expected: Expected,
     /// The states of a step's first answer, to be remembered; empty if there is none.
     answered: Vec<[Option<RowState>; 2]>,
 }
@@ -160,11 +158,11 @@ impl Workspace {
         self.states.clear();
         self.states.resize(island.rows.len(), [None; 2]);
         let Some(warm) = warm else { return };
-        self.keys.clear();
-        self.keys.extend(island.spans.iter().map(|span| key(island, span)));
-        for (span, key) in island.spans.iter().zip(&self.keys) {
-            if let Some((key, point)) = key
-                && let Some(states) = warm.find(*key, *point, &mut self.expected)
+        self.names.clear();
+        self.names.extend(island.spans.iter().map(|span| name(island, span)));
+        for (span, name) in island.spans.iter().zip(&self.names) {
+            if let Some(name) = name
+                && let Some(states) = warm.find(*name)
             {
                 let range = span.first..span.first + span.count.rows;
                 for (out, row) in self.states[range.clone()].iter_mut().zip(&island.rows[range]) {
@@ -177,14 +175,14 @@ impl Workspace {
     /// Keeps the states of an answer for the next step.
     pub fn remember(&mut self, island: &Island, warm: &mut WarmStart) {
         if self.answered.len() == island.rows.len() {
-            for (span, key) in island.spans.iter().zip(&self.keys) {
-                if let Some((key, point)) = key {
+            for (span, name) in island.spans.iter().zip(&self.names) {
+                if let Some(name) = name {
                     let mut states = [[None; 2]; 8];
                     let range = span.first..span.first + span.count.rows;
                     for (state, row) in self.answered[range.clone()].iter().zip(&island.rows[range]) {
                         states[usize::from(row.slot) & 7] = *state;
                     }
-                    warm.add(*key, *point, states);
+                    warm.add(*name, states);
                 }
             }
         }
@@ -219,9 +217,8 @@ impl QuadKernel for Scale<'_> {
     }
 }
 
-/// What names the rows of a span from step to step: the joint, or for a contact, which programs make anew each step, the bodies and
-/// the point in the first one's frame. None if none of the rows has a bound.
-fn key(island: &Island, span: &JointSpan) -> Option<(Key, Vec3)> {
+/// What names the rows of a span from step to step; none if none of them has a bound.
+fn name(island: &Island, span: &JointSpan) -> Option<Name> {
     if span.count.unbounded == span.count.rows {
         return None;
     }
@@ -236,8 +233,8 @@ fn key(island: &Island, span: &JointSpan) -> Option<(Key, Vec3)> {
         let body = island.bodies.get(span.bodies[0] as usize)?;
         let point = first.linear1.cross(first.angular1);
         let bodies = span.bodies.map(|b| island.slot(b));
-        Some((Key { bodies, joint: NIL }, body.frame.rotation.transpose_mul(point)))
+        Some(Name::Contact(bodies, body.frame.rotation.transpose_mul(point)))
     } else {
-        Some((Key { bodies: [NIL; 2], joint: span.joint }, Vec3::ZERO))
+        Some(Name::Joint(span.joint))
     }
 }

@@ -16,6 +16,7 @@ use ferrode_math::simd::{Block64, Quad, QuadKernel, dispatch_quads};
 pub(crate) use system::Task;
 
 pub(crate) use crate::pivoting::ABREAST;
+use crate::pivoting::RowState;
 
 /// Whether islands of this shape can be solved so.
 pub(crate) fn serves(shape: &Symbolic) -> bool {
@@ -44,8 +45,8 @@ pub(crate) struct Abreast<B> {
     z: Vec<B>,
     /// Per block of rows: whether all of them have a weight, in all of them.
     whole: Vec<bool>,
-    /// Per block of rows: whether any has a bound, in any of them.
-    pub bounded: Vec<bool>,
+    /// The rows that have a bound in any of them, and their blocks.
+    pub bounded: Vec<[u32; 2]>,
     /// Whether some row's CFM was raised.
     raised: bool,
     factor: Factor<B>,
@@ -91,16 +92,21 @@ impl<B: Block64> Abreast<B> {
         self.y.fill([B::splat(0.0); 6]);
     }
 
-    /// Has rows, told with their blocks, take no part where their force is given.
-    pub fn hold(&mut self, given: impl Iterator<Item = ([u32; 2], [bool; ABREAST])>) {
+    /// Has the bounded rows be free, or their forces given by their bounds, as their states say.
+    pub fn hold(&mut self, states: &[[RowState; ABREAST]]) {
         self.weight.copy_from_slice(&self.inverse_sigma);
         self.whole.fill(true);
-        for ([row, block], given) in given {
-            for (weight, given) in self.weight[row as usize].as_mut().iter_mut().zip(given) {
-                if given {
-                    *weight = 0.0;
-                    self.whole[block as usize] = false;
-                }
+        for ([row, block], states) in self.bounded.iter().zip(states) {
+            let row = *row as usize;
+            for l in 0..B::LANES {
+                let force = match states[l] {
+                    RowState::Free => continue,
+                    RowState::Lower => self.lo[row][l],
+                    RowState::Upper => self.hi[row][l],
+                };
+                self.lambda[row][l] = force;
+                self.weight[row][l] = 0.0;
+                self.whole[*block as usize] = false;
             }
         }
     }
@@ -126,31 +132,43 @@ impl<'a> Numbers<'a> {
 
 /// Puts numbers of the islands side by side, of as many as there are lanes.
 fn interleave<B: Block64>(of: [&[f64]; ABREAST], out: &mut [B]) {
-    for (i, of) in of.as_chunks::<4>().0.iter().take(B::LANES / 4).enumerate() {
-        dispatch_quads(Interleave(*of, out, i));
-    }
+    dispatch_quads(Interleave(of, out));
 }
 
-/// Puts the numbers of four islands into the quarter or half of the lanes with that number.
-struct Interleave<'a, B>([&'a [f64]; 4], &'a mut [B], usize);
+struct Interleave<'a, B>([&'a [f64]; ABREAST], &'a mut [B]);
 
 impl<B: Block64> QuadKernel for Interleave<'_, B> {
     type Out = ();
 
     #[inline(always)]
     fn run<Q: Quad>(self) {
-        let Self([a, b, c, d], out, part) = self;
-        let (a, b) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-        let (c, d) = (c.as_chunks::<4>(), d.as_chunks::<4>());
-        let (out, last) = out.as_chunks_mut::<4>();
-        for ((((out, a), b), c), d) in out.iter_mut().zip(a.0).zip(b.0).zip(c.0).zip(d.0) {
-            let columns = Q::columns([Q::load(a), Q::load(b), Q::load(c), Q::load(d)]);
-            for i in 0..4 {
-                columns[i].store(&mut out[i].as_mut().as_chunks_mut::<4>().0[part]);
+        let Self(of, out) = self;
+        let mut of = of;
+        let count = out.len();
+        for from in &mut of {
+            *from = &from[..count];
+        }
+        let (chunks, last) = out.as_chunks_mut::<4>();
+        // All lanes of a number before the next: they share a cache line.
+        for (i, out) in chunks.iter_mut().enumerate() {
+            for part in 0..B::LANES / 4 {
+                let mut rows = [Q::splat(0.0); 4];
+                for l in 0..4 {
+                    if let Some(four) = of[4 * part + l][4 * i..].first_chunk() {
+                        rows[l] = Q::load(four);
+                    }
+                }
+                let columns = Q::columns(rows);
+                for k in 0..4 {
+                    columns[k].store(&mut out[k].as_mut().as_chunks_mut::<4>().0[part]);
+                }
             }
         }
-        for ((((out, a), b), c), d) in last.iter_mut().zip(a.1).zip(b.1).zip(c.1).zip(d.1) {
-            out.as_mut().as_chunks_mut::<4>().0[part] = [*a, *b, *c, *d];
+        let first = count - last.len();
+        for (i, out) in last.iter_mut().enumerate() {
+            for l in 0..B::LANES {
+                out[l] = of[l][first + i];
+            }
         }
     }
 }

@@ -10,7 +10,7 @@ use super::{ABREAST, Abreast};
 use ferrode_math::simd::{Block64, Kernel64, Lanes64};
 
 /// What is to be done, with the machine's instructions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Task {
     /// Computes what the rows alone decide: diagonals, CFM as used.
     Prepare,
@@ -22,7 +22,9 @@ pub(crate) enum Task {
     Apply([bool; ABREAST]),
     /// Nothing is changed; the answer is the largest force, and the square of what the force that does most does to its row.
     Strengths,
-    /// Sets `jy` to `J y` in the blocks that have a row with a bound.
+    /// Nothing is changed; the answer is above zero where the pivot of a raised row is not so many times what its CFM was raised to.
+    Loose(f64),
+    /// Sets `jy` to `J y` in the rows that have a bound.
     Product,
     /// Brings forces inside their bounds, and sets `y` to `J^T lambda` and `jy` to `J y`, from these alone. The answer is the natural residual and
     /// the largest force.
@@ -51,11 +53,12 @@ impl<B: Block64> Kernel64<B> for Work<'_, B> {
             Task::Correct(pass) => return [all.correct::<Q>(blocks, shape, pass), B::splat(0.0)],
             Task::Apply(to) => all.apply::<Q>(to),
             Task::Strengths => return all.strengths::<Q>(),
+            Task::Loose(firm) => return [all.loose::<Q>(blocks, shape, firm), B::splat(0.0)],
             Task::Product => {
-                for (block, bounded) in blocks.iter().zip(&all.bounded) {
-                    if *bounded {
-                        product::<Q>(&all.jacobian, block, &all.y, &mut all.jy);
-                    }
+                for [row, block] in &all.bounded {
+                    let y = of_bodies::<Q>(&all.y, blocks[*block as usize].bodies);
+                    let row = *row as usize;
+                    sum(terms(&all.jacobian[row], &y, [true; 2])).store(&mut all.jy[row]);
                 }
             }
             Task::Measure => return all.measure::<Q>(blocks),
@@ -331,24 +334,26 @@ impl<B: Block64> Abreast<B> {
         self.z = z;
     }
 
-    /// Whether the pivot of each raised row is so large that what its CFM was raised by hardly matters: `System::holds_firmly`.
-    pub fn hold_firmly(&self, blocks: &[RowBlock], shape: &Symbolic, firm: f64) -> [bool; ABREAST] {
-        let mut holds = [true; ABREAST];
-        if !self.raised {
-            return holds;
-        }
-        for (block, place) in blocks.iter().zip(&shape.places) {
-            let own = place.own as usize;
-            let step = stride(usize::from(shape.size[own])) + 1;
-            let roots = self.factor.values[shape.start[own] as usize..].iter().step_by(step);
-            for (row, root) in block.range().zip(roots) {
-                for l in 0..B::LANES {
-                    let used = self.used_sigma[row][l];
-                    let raised = self.sigma[row][l] != used && self.weight[row][l] != 0.0;
-                    holds[l] &= !raised || firm * used <= root[l] * root[l];
+    /// Whether the pivot of each raised row is so large that what its CFM was raised by hardly matters: `System::holds_firmly`. The answer
+    /// is above zero where one is not.
+    #[inline(always)]
+    fn loose<Q: Lanes64<Block = B>>(&self, blocks: &[RowBlock], shape: &Symbolic, firm: f64) -> B {
+        let (mut loose, zero, one, firm) = (Q::splat(0.0), Q::splat(0.0), Q::splat(1.0), Q::splat(firm));
+        if self.raised {
+            for (block, place) in blocks.iter().zip(&shape.places) {
+                let own = place.own as usize;
+                let step = stride(usize::from(shape.size[own])) + 1;
+                let roots = &self.factor.values[shape.start[own] as usize..];
+                for (i, row) in block.range().enumerate() {
+                    let (used, root) = (Q::load(&self.used_sigma[row]), Q::load(&roots[step * i]));
+                    let raised = where_positive(used - Q::load(&self.sigma[row]), one, zero);
+                    let raised = where_positive(Q::load(&self.weight[row]), raised, zero);
+                    loose = loose.greater(Q::select((firm * used).le(root * root), zero, raised));
                 }
             }
         }
-        holds
+        let mut out = B::default();
+        loose.store(&mut out);
+        out
     }
 }
