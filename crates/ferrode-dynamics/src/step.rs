@@ -222,6 +222,7 @@ impl World {
         let ctx = self.step_context(h);
         direct::begin_step(direct);
         let projects = self.params.direct.project_joints;
+        let threads = self.crew.threads();
         let at_once = if looks_only { self.islands_at_once(islands) } else { 1 };
         if works.len() < at_once {
             works.resize_with(at_once, IslandWork::default);
@@ -230,7 +231,8 @@ impl World {
         while first < islands.ends.len() {
             // Without threads only those gain that are solved together.
             let most = if at_once == abreast() { islands.alike(first) } else { islands.ends.len() - first };
-            let works = &mut works[..at_once.min(most)];
+            let count = at_once.min(most);
+            let works = &mut works[..count];
             for (i, work) in works.iter_mut().enumerate() {
                 let (bodies, joints) = islands.of(first + i);
                 // An observer that only looks destroys none.
@@ -240,6 +242,10 @@ impl World {
                     None => self.gather(bodies, joints, &mut work.island),
                 }
                 self.assemble(&ctx, &mut work.island, impacts, direct);
+                if threads == 1 {
+                    // While the rows are in the cache.
+                    work.begin_one_of(count, h, &self.params.direct, report.islands + i, direct);
+                }
             }
             self.timing.spent_on(Phase::Assembly);
             match &mut *works {
@@ -247,7 +253,6 @@ impl World {
                 works => {
                     let (settings, number, past) = (&self.params.direct, report.islands, &*direct);
                     // Among threads few islands are shared out one by one.
-                    let threads = self.crew.threads();
                     let share = works.len() / threads;
                     let some =
                         [abreast(), 4].into_iter().find(|some| threads == 1 || *some <= share).unwrap_or(1);

@@ -1,10 +1,10 @@
 //! Islands that follow each other and are alike, such as robots of one kind: their rows are solved four or eight at a time.
 
-use super::{DirectSettings, Island, IslandWork, Problem, Start, Workspace, sparse};
+use super::{DirectSettings, Island, IslandWork, Problem, State, Workspace, sparse};
 use ferrode_lcp::{ABREAST, PivotingReport, SparseLcp, abreast, solve_abreast};
 
 /// Fewer take less time one by one: what lanes do takes as long for one island as for all.
-const LEAST: usize = 3;
+pub(super) const LEAST: usize = 3;
 
 /// Finds the forces of islands that follow each other, the first one's number being `number`.
 pub(crate) fn solve_all(
@@ -20,8 +20,11 @@ pub(crate) fn solve_all(
         rest = others;
         let problem = Problem { settings, number, warm: &past.warm };
         number += works.len();
-        works.iter_mut().for_each(|work| work.begin(h));
-        let reports = solve_alike(works, problem);
+        let together = works.len() >= LEAST;
+        for work in &mut *works {
+            work.begin(h, problem, together);
+        }
+        let reports = if together { solve_alike(works, problem) } else { [None; ABREAST] };
         for (l, (work, report)) in works.iter_mut().zip(reports).enumerate() {
             let problem = Problem { number: problem.number + l, ..problem };
             match report {
@@ -44,19 +47,8 @@ fn alike(works: &[IslandWork]) -> usize {
 
 /// Answers for islands that can be solved together.
 fn solve_alike(works: &mut [IslandWork], problem: Problem<'_>) -> [Option<PivotingReport>; ABREAST] {
-    let none = [None; ABREAST];
-    if works.len() < LEAST || works.iter().any(|work| work.island.rows.is_empty()) {
-        return none;
-    }
-    let sparse_without_friction = |work: &IslandWork| {
-        !work.memory.system.is_for_dense(work.island.rows.len(), problem.settings)
-            && work.memory.system.findex.iter().all(|f| *f < 0)
-    };
-    if !works.iter().all(sparse_without_friction) {
-        return none;
-    }
-    for IslandWork { island, memory, .. } in &mut *works {
-        memory.sparse.begin(island, problem, Start::Step);
+    if !works.iter().all(|work| work.state == State::ReadyForSparse) {
+        return [None; ABREAST];
     }
     let options = sparse::options(problem);
     let (mut pivoting, mut memory) = Default::default();

@@ -107,7 +107,20 @@ pub(crate) struct IslandWork {
     /// The answer; the forces are in the island.
     pub solved: Solved,
     pub report: IslandSolve,
+    state: State,
     memory: Memory,
+}
+
+/// What is ready of an island's problem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum State {
+    /// Nothing, or what was left by a step before.
+    #[default]
+    Old,
+    /// What all methods need.
+    Ready,
+    /// What the sparse method needs too.
+    ReadyForSparse,
 }
 
 #[derive(Debug, Default)]
@@ -172,13 +185,32 @@ impl IslandWork {
     /// Finds the forces of the island's rows, and adds them to all others of its bodies; `number` is the island's in this step. `past` is
     /// only read.
     pub fn solve(&mut self, h: f64, settings: &DirectSettings, number: usize, past: &Workspace) {
-        self.begin(h);
-        self.solve_alone(h, Problem { settings, number, warm: &past.warm });
+        let problem = Problem { settings, number, warm: &past.warm };
+        self.begin(h, problem, false);
+        self.solve_alone(h, problem);
     }
 
-    /// Makes ready what all methods need.
-    fn begin(&mut self, h: f64) {
-        let Self { island, solved, report, memory } = self;
+    /// Makes ready, right after its rows were written, one of as many islands that may be solved together.
+    pub fn begin_one_of(
+        &mut self,
+        count: usize,
+        h: f64,
+        settings: &DirectSettings,
+        number: usize,
+        past: &Workspace,
+    ) {
+        if count >= abreast::LEAST {
+            self.begin(h, Problem { settings, number, warm: &past.warm }, true);
+        }
+    }
+
+    /// Makes ready what is not: what all methods need, and if the island may be solved together with others, what that needs.
+    fn begin(&mut self, h: f64, problem: Problem<'_>, together: bool) {
+        let Self { island, solved, report, state, memory } = self;
+        if *state != State::Old {
+            return;
+        }
+        *state = State::Ready;
         let m = island.rows.len();
         island.lambda.clear();
         island.lambda.resize(m, 0.0);
@@ -188,11 +220,17 @@ impl IslandWork {
             let fps = 1.0 / h;
             free_motions(&island.bodies, fps, &mut memory.free);
             memory.system.load(island, fps, &memory.free);
+            let friction = memory.system.findex.iter().any(|f| *f >= 0);
+            if together && !friction && !memory.system.is_for_dense(m, problem.settings) {
+                memory.sparse.begin(island, problem, Start::Step);
+                *state = State::ReadyForSparse;
+            }
         }
     }
 
     fn solve_alone(&mut self, h: f64, problem: Problem<'_>) {
-        let Self { island, solved, report, memory } = self;
+        let Self { island, solved, report, memory, state } = self;
+        *state = State::Old;
         if island.rows.is_empty() {
             return;
         }
@@ -210,7 +248,8 @@ impl IslandWork {
 
     /// Takes the sparse method's answer, whose forces are in the island.
     fn take_answer(&mut self, answer: PivotingReport, settings: &DirectSettings) {
-        let Self { island, solved, report, memory } = self;
+        let Self { island, solved, report, memory, state } = self;
+        *state = State::Old;
         *solved = memory.sparse.end(island, answer, (settings, Start::Step), report);
         sum_forces(island, &mut memory.forces);
     }
