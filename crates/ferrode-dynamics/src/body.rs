@@ -611,6 +611,11 @@ impl Body {
         self.joint_count
     }
 
+    /// Whether there is a speed that it may not exceed in spinning.
+    pub(crate) fn has_angular_speed_limit(&self) -> bool {
+        self.max_angular_speed < f64::INFINITY
+    }
+
     /// Whether state and gathered forces are finite.
     pub(crate) fn is_finite(&self) -> bool {
         let (f, q) = (&self.frame, self.frame.quaternion);

@@ -1,7 +1,8 @@
 //! The gyroscopic torque of a spinning body, linearly implicit.
 
 use crate::body::Body;
-use ferrode_math::{Mat3, Vec3};
+use ferrode_math::simd::Ordered;
+use ferrode_math::{Matrix3, Vec3, Vector3};
 
 impl Body {
     /// The gyroscopic torque on the body in a step of `h` seconds; zero if that is switched off, and for bodies that are
@@ -26,14 +27,17 @@ impl Body {
 /// (C. Lacoursière, "Stabilizing gyroscopic forces in rigid multibody simulations", 2006). `inertia` is in the world
 /// frame, at the start of the step.
 #[inline(always)]
-pub(crate) fn torque(inertia: &Mat3, w: Vec3, h: f64) -> Vec3 {
+pub(crate) fn torque<T: Ordered>(inertia: &Matrix3<T>, w: Vector3<T>, h: T) -> Vector3<T> {
     let momentum = *inertia * w;
-    let implicit = *inertia - Mat3::cross(momentum * h);
-    match implicit.inverse() {
-        Some(inverse) => {
-            let l = momentum * (1.0 / h);
-            *inertia * (inverse * l) - l
-        }
-        None => Vec3::ZERO,
-    }
+    let implicit = *inertia - Matrix3::cross(momentum * h);
+    let determinant = implicit.determinant();
+    let l = momentum * (T::ONE / h);
+    let torque = *inertia * (implicit.inverse_by(determinant) * l) - l;
+    // None where the matrix can't be inverted.
+    let zero = determinant.le(T::ZERO) & T::ZERO.le(determinant);
+    Vector3::new(
+        T::select(zero, T::ZERO, torque.x),
+        T::select(zero, T::ZERO, torque.y),
+        T::select(zero, T::ZERO, torque.z),
+    )
 }

@@ -2,6 +2,7 @@
 
 mod fast;
 mod few_rows;
+mod four;
 mod impacts;
 mod project;
 mod quick_islands;
@@ -15,10 +16,9 @@ use crate::rows::{JointRows, Row, RowCount, Wrench};
 use crate::solve::direct::{self, ImpactLaw, IslandWork};
 use crate::solve::substep;
 use crate::timing::Phase;
-use crate::{Error, StepReport, World, gyroscopic, integrate};
+use crate::{Error, StepReport, World, integrate};
 use ferrode_lcp::abreast;
 use ferrode_math::random::OdeRandom;
-use ferrode_math::simd::{Compute, compute_wide};
 use ferrode_math::stage::chunks;
 use ferrode_math::{Mat3, Vec3};
 
@@ -383,7 +383,8 @@ impl World {
             island.place[*index as usize] = place as u32;
         }
         island.slots.extend_from_slice(bodies);
-        island.bodies.extend(bodies.iter().map(|index| SolverBody::new(self.bodies.at(*index))));
+        island.bodies.extend(bodies.iter().map(|index| SolverBody::not_turned(self.bodies.at(*index))));
+        four::turn_inertia(&mut island.bodies);
         island.movable = bodies.len();
         for joint in joints {
             let ends = self.joints.at(*joint).nodes.map(|node| node.body);
@@ -417,8 +418,8 @@ impl World {
     }
 
     fn apply_gyroscopic_torques(&self, island: &mut Island, h: f64) {
-        let bodies = island.slots[..island.movable].iter().zip(&mut island.bodies);
-        compute_wide(GyroscopicTorques { world: self, bodies, h });
+        let movable = island.movable;
+        four::add_gyroscopic_torques(self, &island.slots[..movable], &mut island.bodies[..movable], h);
     }
 
     /// Asks each joint for its rows; those without any drop out.
@@ -483,6 +484,13 @@ impl World {
         report: &mut StepReport,
     ) {
         let bodies = &island.slots[..island.movable];
+        let mut moved = moved;
+        let is_watched = |slot: &u32| self.bodies.at(*slot).moved.is_some();
+        if stepper == Stepper::Direct && !moved && observer.is_none() && !bodies.iter().any(is_watched) {
+            // Nobody can tell in which order.
+            four::advance(self, bodies, &island.bodies[..island.movable], h);
+            moved = true;
+        }
         if stepper == Stepper::Quick {
             // All velocities of the island are final before the first callback.
             for (index, solver_body) in bodies.iter().zip(&island.bodies) {
@@ -528,28 +536,6 @@ impl World {
     }
 }
 
-struct GyroscopicTorques<'a, B> {
-    world: &'a World,
-    bodies: B,
-    h: f64,
-}
-
-impl<'a, B: Iterator<Item = (&'a u32, &'a mut SolverBody)>> Compute for GyroscopicTorques<'a, B> {
-    type Out = ();
-
-    #[inline(always)]
-    fn run(self) {
-        for (index, solver_body) in self.bodies {
-            let body = self.world.bodies.at(*index);
-            let velocity = solver_body.frame.angular_velocity;
-            if body.gyroscopic_mode && !body.is_kinematic() && velocity != Vec3::ZERO {
-                let inertia = body.inertia_world();
-                solver_body.torque += gyroscopic::torque(&inertia, velocity, self.h);
-            }
-        }
-    }
-}
-
 /// The ends of a joint, from the island's array.
 fn ends_of<'a>(joint: &Joint, span: &JointSpan, bodies: &'a [SolverBody]) -> Ends<'a> {
     let frame = |place: u32| bodies.get(place as usize).map(|body| &body.frame);
@@ -557,14 +543,21 @@ fn ends_of<'a>(joint: &Joint, span: &JointSpan, bodies: &'a [SolverBody]) -> End
 }
 
 impl SolverBody {
-    #[inline(always)]
     fn new(body: &Body) -> Self {
-        let r = body.frame.rotation;
+        let mut new = [Self::not_turned(body)];
+        four::turn_inertia(&mut new);
+        let [new] = new;
+        new
+    }
+
+    /// With the inverse inertia in the body's own frame.
+    #[inline(always)]
+    fn not_turned(body: &Body) -> Self {
         let immovable = body.quarantined || body.is_kinematic();
         Self {
             frame: body.frame,
             inv_mass: if immovable { 0.0 } else { body.inv_mass },
-            inv_inertia: if immovable { Mat3::ZERO } else { r * body.inv_inertia * r.transpose() },
+            inv_inertia: body.inv_inertia,
             force: body.force,
             torque: body.torque,
         }

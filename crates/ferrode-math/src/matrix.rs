@@ -102,13 +102,20 @@ impl<T: Scalar> Matrix3<T> {
 
     /// The inverse by cofactors, or `None` if the determinant is exactly zero.
     pub fn inverse(&self) -> Option<Self> {
-        let m = &self.rows;
         let det = self.determinant();
         if det == T::ZERO {
             return None;
         }
-        let s = T::ONE / det;
-        Some(Self {
+        Some(self.inverse_by(det))
+    }
+
+    /// The inverse by cofactors, given the determinant; of no use where that is zero.
+    #[inline(always)]
+    #[must_use]
+    pub fn inverse_by(&self, determinant: T) -> Self {
+        let m = &self.rows;
+        let s = T::ONE / determinant;
+        Self {
             rows: [
                 [
                     (m[1][1] * m[2][2] - m[1][2] * m[2][1]) * s,
@@ -126,7 +133,7 @@ impl<T: Scalar> Matrix3<T> {
                     (m[0][0] * m[1][1] - m[0][1] * m[1][0]) * s,
                 ],
             ],
-        })
+        }
     }
 
     /// Sum of the diagonal.

@@ -91,6 +91,14 @@ impl<T: Scalar> Quaternion<T> {
         ])
     }
 
+    /// Time derivative of a body's orientation: ½ (0, w) q, with the angular velocity `w` in the world frame
+    /// (ODE manual, `dDQfromW`).
+    #[inline(always)]
+    #[must_use]
+    pub fn derivative(self, w: Vector3<T>) -> Self {
+        (Self::from_parts(T::ZERO, w) * self).scale(T::from_f64(0.5))
+    }
+
     /// Rotates a vector by a unit quaternion.
     #[inline(always)]
     pub fn rotate(self, v: Vector3<T>) -> Vector3<T> {
@@ -113,11 +121,13 @@ impl Quaternion<f64> {
         self.w.is_finite() && self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
     }
 
+    /// The square of a length up to which squares may have lost digits: they come close to the least normal number.
+    pub const LEAST_SQUARE: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
     /// The unit quaternion along `self`, or `None` if `self` is zero or not finite.
     pub fn normalized(self) -> Option<Self> {
         let l = self.dot(self);
-        // Close to the least normal number, squares have lost digits.
-        if l > f64::MIN_POSITIVE / f64::EPSILON && l.is_finite() {
+        if l > Self::LEAST_SQUARE && l.is_finite() {
             return Some(self.scale(1.0 / l.sqrt()));
         }
         // The square over- or underflowed: scale first.
@@ -171,12 +181,6 @@ impl Quaternion<f64> {
         v[j] = (r[i][j] + r[j][i]) * t;
         v[k] = (r[k][i] + r[i][k]) * t;
         Self::from_parts((r[k][j] - r[j][k]) * t, v)
-    }
-
-    /// Time derivative of a body's orientation: ½ (0, w) q, with the angular velocity `w` in the world frame
-    /// (ODE manual, `dDQfromW`).
-    pub fn derivative(self, w: Vector3<f64>) -> Self {
-        (Self::from_parts(0.0, w) * self).scale(0.5)
     }
 
     /// Interpolates on the shorter arc: `self` at `t = 0`, `b` at `t = 1`. Both must be unit quaternions.

@@ -8,16 +8,17 @@ use crate::{Mat3, Quat, Vec3, real};
 /// |n.z| = 1/√2.
 #[inline]
 pub fn plane_space(n: Vec3) -> (Vec3, Vec3) {
-    if n.z.abs() > core::f64::consts::FRAC_1_SQRT_2 {
-        let a = n.y * n.y + n.z * n.z;
-        let k = 1.0 / a.sqrt();
-        let p = Vec3::new(0.0, -n.z * k, n.y * k);
-        (p, Vec3::new(a * k, -n.x * p.z, n.x * p.y))
+    // Which component takes part is as good as random: selections cost less than a branch.
+    let steep = n.z.abs() > core::f64::consts::FRAC_1_SQRT_2;
+    let (u, v) = if steep { (n.z, n.x) } else { (n.x, n.z) };
+    let a = n.y * n.y + u * u;
+    let k = 1.0 / a.sqrt();
+    let (y, u, a) = (n.y * k, u * k, a * k);
+    let (across, along) = (-(v * y), -(v * u));
+    if steep {
+        (Vec3::new(0.0, -u, y), Vec3::new(a, across, along))
     } else {
-        let a = n.x * n.x + n.y * n.y;
-        let k = 1.0 / a.sqrt();
-        let p = Vec3::new(-n.y * k, n.x * k, 0.0);
-        (p, Vec3::new(-n.z * p.y, n.z * p.x, a * k))
+        (Vec3::new(-y, u, 0.0), Vec3::new(along, across, a))
     }
 }
 
