@@ -98,8 +98,8 @@ impl<B: Block64> Abreast<B> {
         self.whole.fill(true);
         for ([row, block], states) in self.bounded.iter().zip(states) {
             let row = *row as usize;
-            for l in 0..B::LANES {
-                let force = match states[l] {
+            for (l, state) in states.iter().enumerate().take(B::LANES) {
+                let force = match state {
                     RowState::Free => continue,
                     RowState::Lower => self.lo[row][l],
                     RowState::Upper => self.hi[row][l],
