@@ -103,6 +103,9 @@ pub fn dispatch_few<K: Kernel>(level: Level, kernel: K) -> K::Out {
         }
         #[cfg(target_arch = "x86_64")]
         // SAFETY: `is_available` has found the instructions on this machine.
+        Level::Avx512 if Level::Avx512.is_available() => unsafe { super::x86::run_avx512(kernel) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: `is_available` has found the instructions on this machine.
         Level::Avx2 | Level::Avx512 if Level::Avx2.is_available() => unsafe { super::x86::run_avx2(kernel) },
         #[cfg(target_arch = "x86_64")]
         _ => kernel.run::<super::x86::F32x4>(),

@@ -372,7 +372,7 @@ impl World {
         );
         let context = JointContext::new(self.step_context(h), n, settings.joint.coefficients(part), ratio);
         joints.find_carried(&context, bodies, &self.bodies, &mut self.joints, memory);
-        articulations.find(level, joints, bodies);
+        articulations.find((settings.lanes, crew.threads()), joints, bodies);
         joints.begin(bodies, &self.bodies);
         let touching =
             contacts.keys.iter().filter(|key| key.sort != contact::NOT_SOLVED).map(|key| key.bodies);
@@ -388,28 +388,28 @@ impl World {
             let when = if i == 0 { When::First } else { When::Next };
             joints.rewrite(when, &context, bodies, &self.bodies, &mut self.joints, memory);
             let load = if i == 0 { Task::Begin(joints, dt) } else { Task::Advance(joints, true) };
-            articulations.pass(level, crew, load, bodies);
+            articulations.pass(crew, load, bodies);
             joints.solve(false, bodies);
             contacts.pass(level, crew, Pass::Biased, bodies, (dt, dt * i as f32));
-            articulations.pass(level, crew, Task::Solve(Mode::Biased(dt)), bodies);
+            articulations.pass(crew, Task::Solve(Mode::Biased(dt)), bodies);
             bodies.integrate_positions(crew, dt);
             joints.solve(true, bodies);
             contacts.pass(level, crew, Pass::Relax, bodies, (dt, dt * (i + 1) as f32));
-            articulations.pass(level, crew, Task::Solve(Mode::Relax), bodies);
+            articulations.pass(crew, Task::Solve(Mode::Relax), bodies);
             if joints.are_written() {
-                articulations.pass(level, crew, Task::Store(joints), bodies);
+                articulations.pass(crew, Task::Store(joints), bodies);
                 joints.sum_feedback();
             }
         }
         if contacts.has_bounce {
             contacts.pass(level, crew, Pass::Restitution, bodies, (dt, h as f32));
-            articulations.pass(level, crew, Task::Solve(Mode::Relax), bodies);
+            articulations.pass(crew, Task::Solve(Mode::Relax), bodies);
         }
-        articulations.pass(level, crew, Task::Store(joints), bodies);
+        articulations.pass(crew, Task::Store(joints), bodies);
         if !articulations.is_empty() {
             joints.rewrite(When::End, &context, bodies, &self.bodies, &mut self.joints, memory);
-            articulations.pass(level, crew, Task::Advance(joints, false), bodies);
-            articulations.pass(level, crew, Task::Solve(Mode::Project), bodies);
+            articulations.pass(crew, Task::Advance(joints, false), bodies);
+            articulations.pass(crew, Task::Solve(Mode::Project), bodies);
         }
         contacts.store(level, manifolds);
         joints.remember(memory, &self.joints);
