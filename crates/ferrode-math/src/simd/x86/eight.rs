@@ -1,12 +1,21 @@
 //! Eight `f64` of AVX-512.
 
 use crate::Scalar;
-use crate::simd::{EightF64, Lanes64, Mask, Ordered};
+use crate::simd::{EightF64, Kernel64, Lanes64, Mask, Ordered};
 use core::arch::x86_64::*;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, MulAssign, Neg, Not, Sub, SubAssign};
 
 // As everywhere in this file's parent: values of the type are only made, and its functions only called, where the machine has AVX-512F: by
 // kernels that `run_eight` runs.
+
+/// Runs a kernel with eight lanes of `f64`.
+///
+/// # Safety
+/// The machine has AVX-512F.
+#[target_feature(enable = "avx,avx2,avx512f")]
+pub(in crate::simd) unsafe fn run_eight<K: Kernel64<EightF64>>(kernel: K) -> K::Out {
+    kernel.run::<F64x8>()
+}
 
 /// Eight numbers in a register.
 #[derive(Clone, Copy, Debug)]

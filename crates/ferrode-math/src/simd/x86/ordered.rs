@@ -1,6 +1,6 @@
 //! Four `f64` of AVX2 as numbers that can be compared.
 
-use super::F64x4;
+use super::quads::F64x4;
 use crate::Scalar;
 use crate::simd::{Mask, Ordered};
 use core::arch::x86_64::*;
