@@ -235,6 +235,7 @@ impl World {
             let works = &mut works[..count];
             for (i, work) in works.iter_mut().enumerate() {
                 let (bodies, joints) = islands.of(first + i);
+                work.forget();
                 // An observer that only looks destroys none.
                 let survivors = if looks_only { None } else { self.survivors(bodies, joints) };
                 match survivors {

@@ -190,6 +190,11 @@ impl IslandWork {
         self.solve_alone(h, problem);
     }
 
+    /// Another island comes in: nothing of it is ready, whatever became of the one before.
+    pub fn forget(&mut self) {
+        self.state = State::Old;
+    }
+
     /// Makes ready, right after its rows were written, one of as many islands that may be solved together.
     pub fn begin_one_of(
         &mut self,
