@@ -573,11 +573,15 @@ impl World {
         {
             return Err(Error::SameBody(a));
         }
-        let joint_type = self.joints.at(index).kind.joint_type();
+        let joint = self.joints.at(index);
+        let joint_type = joint.kind.joint_type();
+        let is_detached = joint.nodes[0].body == NIL && joint.nodes[1].body == NIL;
         if joint_type.needs_two_bodies() && first.is_some() != second.is_some() {
             return Err(Error::NeedsTwoBodies(joint_type));
         }
-        self.detach(index);
+        if !is_detached {
+            self.detach(index);
+        }
         let reverse = first.is_none();
         if reverse {
             bodies.swap(0, 1);
@@ -585,6 +589,7 @@ impl World {
         self.joints.at_mut(index).reverse = reverse;
         for (side, body) in bodies.into_iter().enumerate() {
             if body != NIL {
+                self.topology_version += u64::from(joint_type != JointType::Contact);
                 self.push_link(index * 2 + side as u32, body);
             }
         }
@@ -602,32 +607,25 @@ impl World {
         self.topology_version
     }
 
-    fn note_topology(&mut self, joint: u32) {
-        if self.joints.at(joint).kind.joint_type() != JointType::Contact {
-            self.topology_version += 1;
-        }
-    }
-
     fn push_link(&mut self, link: Link, body: u32) {
-        self.note_topology(link >> 1);
-        let next = self.bodies.at(body).first_joint;
+        let owner = self.bodies.at_mut(body);
+        let next = core::mem::replace(&mut owner.first_joint, link);
+        owner.joint_count += 1;
         self.joints.at_mut(link >> 1).nodes[(link & 1) as usize] = Node { body, next, prev: NIL };
         if next != NIL {
             self.joints.at_mut(next >> 1).nodes[(next & 1) as usize].prev = link;
         }
-        let body = self.bodies.at_mut(body);
-        body.first_joint = link;
-        body.joint_count += 1;
     }
 
     /// Takes a joint off its bodies.
     fn detach(&mut self, joint: u32) {
-        for side in 0..2 {
-            let node = core::mem::replace(&mut self.joints.at_mut(joint).nodes[side], Node::DETACHED);
+        let Joint { nodes, kind, .. } = self.joints.at_mut(joint);
+        let changes = u64::from(kind.joint_type() != JointType::Contact);
+        for node in core::mem::replace(nodes, [Node::DETACHED; 2]) {
             if node.body == NIL {
                 continue;
             }
-            self.note_topology(joint);
+            self.topology_version += changes;
             let body = self.bodies.at_mut(node.body);
             body.joint_count -= 1;
             unlink(node.prev, node.next, &mut body.first_joint, |link, prev, next| {

@@ -36,7 +36,7 @@ pub use pivoting::{
 pub use problem::BoxedLcp;
 pub use residual::natural_residual;
 pub use sor::{
-    DynamicIterations, InfTimesZero, NO_BODY, SorAcceleration, SorBody, SorExit, SorParams, SorReport,
-    SorRow, SorWorkspace, begin_sor_rows, finish_sor, solve_sor, solve_sor_rows,
+    DynamicIterations, InfTimesZero, LoneRow, NO_BODY, SorAcceleration, SorBody, SorExit, SorParams,
+    SorReport, SorRow, SorWorkspace, begin_sor_alone, begin_sor_rows, finish_sor, solve_sor, solve_sor_rows,
 };
 pub use sparse::{NO_SPARSE_BODY, RowBlock, ScaledRow};

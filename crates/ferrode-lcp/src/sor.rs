@@ -18,15 +18,21 @@
 //! **Order.** At first all rows without a friction index in their order, then all with one. At the start of the iterations 8, 16, 24, …
 //! the whole order is shuffled in place: for k = 1 … m-1, r = random(k + 1), entries k and r change places.
 //!
-//! Up to two dozen rows are visited in the same order by other means: those of one body, such as a box on the ground, in lanes (`alone`), those
-//! of few bodies on their matrix (`small`); several problems side by side if [`begin_sor_rows`] has taken them in.
+//! Up to two dozen rows are visited in the same order by other means: those of one body, such as a box on the ground, in lanes (`alone`,
+//! `loom`), those of few bodies on their matrix (`small`); several problems side by side if [`begin_sor_rows`] or [`begin_sor_alone`] has
+//! taken them in (`together`).
 
 mod alone;
+mod loom;
 mod small;
 mod sweep;
+mod together;
+
+pub use alone::LoneRow;
+pub use together::finish_sor;
 
 use crate::error::{LcpError, check_len};
-use alone::Alone;
+use alone::{Alone, PLACES, check_bounds};
 use core::marker::PhantomData;
 use ferrode_math::simd::{Quad, QuadKernel, dispatch_quads};
 use small::Small;
@@ -38,9 +44,6 @@ pub const NO_BODY: u32 = u32::MAX;
 
 /// How many iterations lie between two shuffles of the rows.
 const SHUFFLE_PERIOD: u32 = 8;
-
-/// So many problems that wait are put in order by size.
-const TOGETHER: usize = 16;
 
 /// The bodies that stand for no body: several, by turns, so that rows that have none of their own don't wait for each other.
 const STAND_INS: usize = 8;
@@ -208,6 +211,11 @@ pub struct SorWorkspace {
     acceleration: Vec<SorAcceleration>,
     small: Small,
     alone: Alone,
+    /// None, or two: most problems of one body are visited in another's.
+    looms: Vec<loom::Loom>,
+    /// The number of rows, and of bodies, of the last problem that was taken in.
+    rows: usize,
+    bodies: usize,
     /// All rows are of one body.
     one_body: bool,
     /// What [`begin_sor_rows`] has begun, or how it ended.
@@ -227,13 +235,13 @@ impl SorWorkspace {
     /// The forces of the last solve, one per row.
     #[must_use]
     pub fn lambda(&self) -> &[f64] {
-        &self.lambda[..self.lambda.len().saturating_sub(1)]
+        &self.lambda[..self.rows]
     }
 
     /// The accelerations of the last solve, one per body.
     #[must_use]
     pub fn acceleration(&self) -> &[SorAcceleration] {
-        &self.acceleration[..self.acceleration.len().saturating_sub(STAND_INS)]
+        &self.acceleration[..self.bodies]
     }
 
     /// What the last solve did; `None` if there was none, or it has not ended.
@@ -299,8 +307,7 @@ pub fn begin_sor_rows(
     workspace.state = State::Idle;
     check_params(params)?;
     if let Err(error) = dispatch_quads(Load { workspace, bodies, count, rows, params }) {
-        workspace.lambda.clear();
-        workspace.acceleration.clear();
+        workspace.refuse();
         return Err(error);
     }
     match (params.dynamic, params.inf_times_zero) {
@@ -316,10 +323,37 @@ pub fn begin_sor_rows(
     Ok(())
 }
 
-/// Solves what [`begin_sor_rows`] has begun in these workspaces, if it still waits. The answers are, to the bit, those of
-/// solving each problem by itself.
-pub fn finish_sor<'a>(workspaces: impl Iterator<Item = &'a mut SorWorkspace>) {
-    dispatch_quads(Finish { workspaces });
+/// [`begin_sor_rows`] for `count` rows of one body alone, with the same answer.
+///
+/// # Errors
+/// As [`begin_sor_rows`].
+pub fn begin_sor_alone(
+    body: &SorBody,
+    count: usize,
+    rows: impl Iterator<Item = LoneRow>,
+    params: &SorParams,
+    random: &mut impl FnMut(u32) -> u32,
+    workspace: &mut SorWorkspace,
+) -> Result<(), LcpError> {
+    if params.dynamic.is_some() || !alone::suits(count, params.iterations) {
+        let rows = rows.map(|LoneRow { j: [a, b, c, d, e, f], rhs, cfm, lo, hi, findex }| SorRow {
+            j: [a, b, c, d, e, f, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+            rhs,
+            cfm,
+            lo,
+            hi,
+            findex,
+            body: [0, NO_BODY],
+        });
+        return begin_sor_rows(core::slice::from_ref(body), count, rows, params, random, workspace);
+    }
+    workspace.state = State::Idle;
+    check_params(params)?;
+    let taken = dispatch_quads(LoadAlone { workspace, body, count, rows, params, random });
+    if taken.is_err() {
+        workspace.refuse();
+    }
+    taken
 }
 
 /// Whether all numbers are finite: 0 times a number is 0 unless the number is infinite or none.
@@ -348,6 +382,30 @@ impl<R: Iterator<Item: Borrow<SorRow>>> QuadKernel for Load<'_, R> {
     #[inline(always)]
     fn run<Q: Quad>(self) -> Result<(), LcpError> {
         self.workspace.load::<Q>(self.bodies, self.count, self.rows, self.params)
+    }
+}
+
+/// Taking the rows of a body alone in, and drawing the order of their visits, compiled for the machine.
+struct LoadAlone<'a, I, R> {
+    workspace: &'a mut SorWorkspace,
+    body: &'a SorBody,
+    count: usize,
+    rows: I,
+    params: &'a SorParams,
+    random: &'a mut R,
+}
+
+impl<I: Iterator<Item = LoneRow>, R: FnMut(u32) -> u32> QuadKernel for LoadAlone<'_, I, R> {
+    type Out = Result<(), LcpError>;
+
+    #[inline(always)]
+    fn run<Q: Quad>(self) -> Result<(), LcpError> {
+        let Self { workspace, body, count, rows, params, random } = self;
+        workspace.blank(count, PLACES, 1, 1);
+        workspace.alone.load::<Q>(body, count, rows, params)?;
+        workspace.alone.draw(random);
+        workspace.state = State::Begun { iterations: params.iterations, alone: true };
+        Ok(())
     }
 }
 
@@ -380,97 +438,6 @@ impl<R: FnMut(u32) -> u32, const ZERO: bool, const DYNAMIC: bool> QuadKernel for
     }
 }
 
-/// The visits of problems that wait, compiled for the machine.
-struct Finish<I> {
-    workspaces: I,
-}
-
-impl<'a, I: Iterator<Item = &'a mut SorWorkspace>> QuadKernel for Finish<I> {
-    type Out = ();
-
-    #[inline(always)]
-    fn run<Q: Quad>(self) {
-        let mut waiting = self.workspaces.filter(|workspace| matches!(workspace.state, State::Begun { .. }));
-        loop {
-            let mut some = [const { None }; TOGETHER];
-            let mut count = 0;
-            for (place, workspace) in some.iter_mut().zip(&mut waiting) {
-                *place = Some(workspace);
-                count += 1;
-            }
-            let some = &mut some[..count];
-            finish_alone::<Q>(some);
-            // Those of one size side by side: a visit takes as long as that of the largest.
-            some.sort_unstable_by_key(|workspace| workspace.as_ref().map(|workspace| workspace.small.left()));
-            let left = some.iter_mut().filter_map(Option::take);
-            finish_all::<Q>(left.filter(|workspace| matches!(workspace.state, State::Begun { .. })));
-            if count < TOGETHER {
-                return;
-            }
-        }
-    }
-}
-
-/// Solves the problems of one body, those of one size abreast: a visit takes as long as that of the largest.
-#[inline(always)]
-fn finish_alone<Q: Quad>(some: &mut [Option<&mut SorWorkspace>]) {
-    let mut sizes = [((0, 0), 0); TOGETHER];
-    let mut count = 0;
-    for (place, workspace) in some.iter().enumerate().take(TOGETHER) {
-        if let Some(SorWorkspace { alone, state: State::Begun { alone: true, .. }, .. }) = workspace {
-            sizes[count] = (alone.size(), place);
-            count += 1;
-        }
-    }
-    let sizes = &mut sizes[..count];
-    let Some(&(_, home)) = sizes.first() else { return };
-    // Always in the same memory.
-    let mut looms = some[home].as_mut().map(|workspace| core::mem::take(&mut workspace.alone.looms));
-    let Some(looms_here) = &mut looms else { return };
-    // The largest first: those that are left over at the end are small.
-    sizes.sort_unstable_by(|a, b| b.cmp(a));
-    for alike in sizes.chunk_by(|a, b| a.0.0 == b.0.0) {
-        for places in alike.chunks(alone::AT_ONCE) {
-            let mut workspaces = [const { None }; alone::AT_ONCE];
-            for (workspace, (_, place)) in workspaces.iter_mut().zip(places) {
-                *workspace = some[*place].take();
-            }
-            let mut problems = workspaces.each_mut().map(|w| w.as_mut().and_then(|w| w.problem_alone()));
-            alone::visit::<Q>(&mut problems, looms_here);
-            for (workspace, (_, place)) in workspaces.into_iter().zip(places) {
-                some[*place] = workspace;
-            }
-        }
-    }
-    for (_, place) in sizes {
-        if let Some(workspace) = &mut some[*place]
-            && let State::Begun { iterations, .. } = workspace.state
-        {
-            workspace.state = State::Ended { iterations, exit: SorExit::Completed };
-        }
-    }
-    if let (Some(workspace), Some(looms)) = (&mut some[home], looms) {
-        workspace.alone.looms = looms;
-    }
-}
-
-/// Solves what waits, two at a time.
-#[inline(always)]
-fn finish_all<'a, Q: Quad>(mut waiting: impl Iterator<Item = &'a mut SorWorkspace>) {
-    let (mut first, mut second) = (waiting.next(), waiting.next());
-    while let Some(one) = first {
-        match &mut second {
-            Some(other) => Small::visit::<Q, 2>([&mut one.small, &mut other.small]),
-            None => Small::visit::<Q, 1>([&mut one.small]),
-        }
-        second = second.and_then(|other| other.finished::<Q>().map_or_else(|| waiting.next(), Some));
-        first = one.finished::<Q>().map_or_else(|| second.take().or_else(|| waiting.next()), Some);
-        if second.is_none() {
-            second = waiting.next();
-        }
-    }
-}
-
 fn check_params(params: &SorParams) -> Result<(), LcpError> {
     let usable = |what, value: f64| {
         if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(LcpError::Parameter { what, value }) }
@@ -486,16 +453,7 @@ fn check_params(params: &SorParams) -> Result<(), LcpError> {
 /// Checks one of `rows` rows on `bodies` bodies.
 #[inline(always)]
 fn check_row(row: usize, r: &SorRow, rows: usize, bodies: usize) -> Result<(), LcpError> {
-    if r.findex >= 0 {
-        if r.findex as usize >= rows {
-            return Err(LcpError::FrictionIndex { row, findex: r.findex });
-        }
-        if r.hi.is_nan() {
-            return Err(LcpError::Bounds { row, lo: r.lo, hi: r.hi });
-        }
-    } else if r.lo.is_nan() || r.hi.is_nan() || r.lo > r.hi {
-        return Err(LcpError::Bounds { row, lo: r.lo, hi: r.hi });
-    }
+    check_bounds(row, r.findex, r.lo, r.hi, rows)?;
     let known = |b: u32| b == NO_BODY || (b as usize) < bodies;
     let twice = r.body[0] == r.body[1] && r.body[0] != NO_BODY;
     if !known(r.body[0]) || !known(r.body[1]) || twice {
@@ -505,6 +463,21 @@ fn check_row(row: usize, r: &SorRow, rows: usize, bodies: usize) -> Result<(), L
 }
 
 impl SorWorkspace {
+    /// Sets so many forces and accelerations to zero, of which those of the rows and bodies are the answer.
+    #[inline(always)]
+    fn blank(&mut self, rows: usize, forces: usize, bodies: usize, accelerations: usize) {
+        (self.rows, self.bodies) = (rows, bodies);
+        self.lambda.clear();
+        self.lambda.resize(forces, 0.0);
+        self.acceleration.clear();
+        self.acceleration.resize(accelerations, SorAcceleration::default());
+    }
+
+    /// Leaves no answer.
+    fn refuse(&mut self) {
+        (self.rows, self.bodies) = (0, 0);
+    }
+
     /// Packs the rows and sets forces and accelerations to zero.
     #[inline(always)]
     fn load<Q: Quad>(
@@ -515,11 +488,8 @@ impl SorWorkspace {
         params: &SorParams,
     ) -> Result<(), LcpError> {
         let nobody = bodies.len();
-        self.lambda.clear();
-        self.lambda.resize(m, 0.0);
-        self.lambda.push(1.0);
-        self.acceleration.clear();
-        self.acceleration.resize(nobody + STAND_INS, SorAcceleration::default());
+        self.blank(m, PLACES.max(m + 1), nobody, nobody + STAND_INS);
+        self.lambda[m] = 1.0;
         self.mass.clear();
         self.mass.extend(bodies.iter().map(InverseMass::new));
         self.mass.push(InverseMass::default());
@@ -585,28 +555,6 @@ impl SorWorkspace {
         self.one_body && params.dynamic.is_none() && alone::suits(self.order.len(), params.iterations)
     }
 
-    /// The problem, if it is one of a body alone.
-    #[inline(always)]
-    fn problem_alone(&mut self) -> Option<alone::Problem<'_>> {
-        let Self { alone, packed, lambda, acceleration, .. } = self;
-        Some(alone::Problem { alone, packed, lambda, acceleration: acceleration.first_mut()? })
-    }
-
-    /// Writes the answer down if all visits are made; else gives the workspace back.
-    #[inline(always)]
-    fn finished<Q: Quad>(&mut self) -> Option<&mut Self> {
-        if self.small.left() > 0 {
-            return Some(self);
-        }
-        let (rows, bodies) = (self.order.len(), self.acceleration.len() - STAND_INS);
-        let Self { small, packed, lambda, acceleration, .. } = self;
-        small.finish::<Q>(&packed[..rows], &mut lambda[..rows], &mut acceleration[..bodies]);
-        if let State::Begun { iterations, .. } = self.state {
-            self.state = State::Ended { iterations, exit: SorExit::Completed };
-        }
-        None
-    }
-
     /// Does the iterations, or prepares them if they can wait for others'. `ZERO`: infinity times zero is zero; `DYNAMIC`: watch the changes.
     #[inline(always)]
     fn run<Q: Quad, const ZERO: bool, const DYNAMIC: bool>(
@@ -619,9 +567,10 @@ impl SorWorkspace {
         if planned == 0 {
             return ended(0, SorExit::Completed);
         }
-        let (rows, bodies) = (self.order.len(), self.acceleration.len() - STAND_INS);
+        let (rows, bodies) = (self.rows, self.bodies);
         if !DYNAMIC && self.is_alone(params) {
-            self.alone.begin(&mut self.packed[..rows], &self.order, params, random);
+            self.alone.take_over(&self.packed[..rows], &self.order, params);
+            self.alone.draw(random);
             return State::Begun { iterations: planned, alone: true };
         }
         if !DYNAMIC && is_small(rows, bodies, params) {
@@ -659,8 +608,8 @@ impl SorWorkspace {
     /// Visits every row once: in stretches of rows on the same bodies until the first shuffle, one by one after.
     #[inline(always)]
     fn sweep<Q: Quad, const ZERO: bool, const DYNAMIC: bool>(&mut self, shuffled: bool) {
-        let Self { packed, order, stretches, lambda, acceleration, weight, change, .. } = self;
-        let nobody = acceleration.len() - STAND_INS;
+        let Self { packed, order, stretches, lambda, acceleration, weight, change, bodies, .. } = self;
+        let nobody = *bodies;
         let mut sweep = Sweep::<Q, ZERO, DYNAMIC> {
             packed,
             lambda,

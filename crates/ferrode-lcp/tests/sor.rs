@@ -269,6 +269,62 @@ fn several_at_once_have_the_bits_of_each_by_itself() {
 }
 
 #[test]
+fn rows_of_one_body_by_their_own_way_have_the_same_bits() {
+    let mut numbers = Numbers(29);
+    for rows in [0, 1, 2, 3, 6, 9, 23, 24, 25, 40] {
+        let (bodies, rows) = lone_body(rows, &mut numbers);
+        let half = |r: &SorRow| {
+            let [a, b, c, d, e, f, ..] = r.j;
+            let SorRow { rhs, cfm, lo, hi, findex, .. } = *r;
+            LoneRow { j: [a, b, c, d, e, f], rhs, cfm, lo, hi, findex }
+        };
+        for iterations in [0, 1, 8, 20, 1001] {
+            for inf_times_zero in [InfTimesZero::Unbounded, InfTimesZero::Zero] {
+                let params = SorParams { iterations, inf_times_zero, ..SorParams::default() };
+                let (mut a, mut b) = (SorWorkspace::new(), SorWorkspace::new());
+                let (mut one, mut other) = (stream(3), stream(3));
+                begin_sor_rows(&bodies, rows.len(), rows.iter(), &params, &mut one, &mut a).unwrap();
+                let halves = rows.iter().map(half);
+                begin_sor_alone(&bodies[0], rows.len(), halves, &params, &mut other, &mut b).unwrap();
+                assert_eq!(one(1000), other(1000), "as many random numbers");
+                finish_sor([&mut a, &mut b].into_iter());
+                let bits = |ws: &SorWorkspace| -> Vec<u64> {
+                    let accelerations = ws.acceleration().iter().flat_map(|a| a.0);
+                    ws.lambda().iter().copied().chain(accelerations).map(f64::to_bits).collect()
+                };
+                assert_eq!((a.lambda().len(), a.acceleration().len()), (rows.len(), 1));
+                assert_eq!(bits(&a), bits(&b), "{} rows", rows.len());
+                assert_eq!(a.report(), b.report());
+            }
+        }
+    }
+}
+
+#[test]
+fn malformed_rows_of_one_body_are_errors() {
+    let mut ws = SorWorkspace::new();
+    let row =
+        LoneRow { j: [1.0, 0.0, 0.0, 0.0, 0.0, 0.0], rhs: 1.0, cfm: 0.0, lo: -1.0, hi: 1.0, findex: -1 };
+    let mut take = |row: LoneRow, count: usize, params: &SorParams| {
+        let rows = core::iter::once(row);
+        let taken = begin_sor_alone(&unit_body(), count, rows, params, &mut stream(1), &mut ws);
+        finish_sor(core::iter::once(&mut ws));
+        assert_eq!(ws.lambda().len(), usize::from(taken.is_ok()));
+        taken
+    };
+    let params = SorParams::default();
+    assert_eq!(take(row, 1, &params), Ok(()));
+    let bad = |findex| LcpError::FrictionIndex { row: 0, findex };
+    assert_eq!(take(LoneRow { findex: 1, ..row }, 1, &params), Err(bad(1)));
+    assert!(matches!(take(LoneRow { lo: 2.0, ..row }, 1, &params), Err(LcpError::Bounds { row: 0, .. })));
+    let without = LoneRow { findex: 0, hi: f64::NAN, ..row };
+    assert!(matches!(take(without, 1, &params), Err(LcpError::Bounds { row: 0, .. })));
+    assert_eq!(take(row, 2, &params), Err(LcpError::Size { what: "rows", need: 2, got: 1 }));
+    let params = SorParams { over_relaxation: f64::NAN, ..params };
+    assert!(matches!(take(row, 1, &params), Err(LcpError::Parameter { .. })));
+}
+
+#[test]
 fn rows_may_be_made_on_the_way() {
     let (bodies, rows) = random_scene(5, 30, true, &mut Numbers(3));
     let params = SorParams::default();

@@ -100,9 +100,9 @@ record!(JointRecord, JOINTS, 3);
 pub struct GroupRecord {
     tag: Tag,
     /// Oldest first.
-    pub joints: RefCell<Vec<JointId>>,
+    pub joints: RefCell<Vec<Link<JointRecord>>>,
     /// Records of joints that were destroyed with the group's others: nobody else's, to be used again by this group.
-    pub spare: RefCell<VecDeque<JointId>>,
+    pub spare: RefCell<VecDeque<Link<JointRecord>>>,
 }
 record!(GroupRecord, GROUPS, 4);
 

@@ -283,6 +283,12 @@ impl<T: Record> Link<T> {
         self.0.filter(|record| record.tag().lives())
     }
 
+    /// The record, if it is dead.
+    #[inline]
+    pub fn dead(self) -> Option<&'static T> {
+        self.0.filter(|record| !record.tag().lives())
+    }
+
     /// As the program sees it.
     #[inline]
     pub fn handle(self) -> Handle<T> {
@@ -310,11 +316,6 @@ impl<T: Record> Handle<T> {
     #[inline]
     pub fn live(self) -> Option<&'static T> {
         self.record().filter(|record| record.tag().lives())
-    }
-
-    /// The dead record behind a handle that is known to be one.
-    pub fn dead(self) -> Option<&'static T> {
-        self.record().filter(|record| !record.tag().lives())
     }
 
     #[inline]

@@ -265,7 +265,9 @@ pub(super) fn each_facet<R: Rule>(
         return;
     }
     let Some(body) = Body::of(shape, &local, Vec3::ZERO) else { return };
-    let near = Numbers::near(mesh, &around);
+    let mut near = Numbers::NONE;
+    near.find(mesh, &around);
+    let mut found = FacetContacts::new();
     let overlap = {
         let mut search = Search {
             rule,
@@ -273,7 +275,7 @@ pub(super) fn each_facet<R: Rule>(
             local: &local,
             body: &body,
             sieve: Sieve::new(mesh, local, rule.half(), R::BOTH_SIDES),
-            found: FacetContacts::new(),
+            found: &mut found,
             overlap: false,
             all: out.all(),
         };
@@ -307,7 +309,7 @@ struct Search<'a, R> {
     /// The box around the body.
     sieve: Sieve<'a>,
     /// Working memory.
-    found: FacetContacts,
+    found: &'a mut FacetContacts,
     /// Whether any triangle overlaps the body.
     overlap: bool,
     all: Contacts<'a>,
@@ -495,7 +497,7 @@ impl<R: Rule> Search<'_, R> {
     fn touch(&mut self, i: u32, near: &Near<f64>, least: &Least<f64>) {
         self.overlap = true;
         self.found.count = 0;
-        self.rule.contacts(near, least, &mut self.found);
+        self.rule.contacts(near, least, self.found);
         let verdict = self.found.verdict(near, self.mesh.neighbours(i));
         if verdict == Verdict::Ghost {
             if let Some(facet) = self.mesh.facet(i) {

@@ -19,18 +19,28 @@ impl Numbers {
     /// The triangles whose boxes overlap `around`, and a few beside these, in the order of the mesh's tree.
     #[inline]
     pub fn near(mesh: &TriMesh, around: &Aabb) -> Self {
-        let mut found = Self { first: [0; Self::FIRST], count: 0, more: Vec::new(), behind: 0 };
-        mesh.tree().query_leaves(around, |leaf, count| {
-            if let Some(place) = found.first.get_mut(found.count..).and_then(<[u32]>::first_chunk_mut) {
+        let mut found = Self::NONE;
+        found.find(mesh, around);
+        found
+    }
+
+    /// None yet.
+    pub const NONE: Self = Self { first: [0; Self::FIRST], count: 0, more: Vec::new(), behind: 0 };
+
+    /// Fills what holds none as [`near`](Self::near) does.
+    #[inline(never)]
+    pub fn find(&mut self, mesh: &TriMesh, around: &Aabb) {
+        let Self { first, count, more, .. } = self;
+        mesh.tree().query_leaves(around, |leaf, members| {
+            if let Some(place) = first.get_mut(*count..).and_then(<[u32]>::first_chunk_mut) {
                 *place = *leaf;
-                found.count += count;
+                *count += members;
             } else {
-                found.more.extend(&leaf[..count]);
+                more.extend(&leaf[..members]);
             }
         });
-        found.behind = found.more.len();
-        found.more.resize(found.behind.next_multiple_of(4), 0);
-        found
+        self.behind = self.more.len();
+        self.more.resize(self.behind.next_multiple_of(4), 0);
     }
 
     /// All of them, one by one.
@@ -85,14 +95,8 @@ pub(super) fn splat<Q: Quad>(v: Vec3) -> Vector3<Q> {
 
 /// A vector in each lane.
 #[inline(always)]
-pub(super) fn lanes<Q: Quad>(of: [Vec3; 4]) -> Vector3<Q> {
-    let [a, b, c, d] = of;
-    let [x, y, z, _] = Q::columns([
-        Q::load(&[a.x, a.y, a.z, 0.0]),
-        Q::load(&[b.x, b.y, b.z, 0.0]),
-        Q::load(&[c.x, c.y, c.z, 0.0]),
-        Q::load(&[d.x, d.y, d.z, 0.0]),
-    ]);
+fn lanes<Q: Quad>(a: &[f64; 4], b: &[f64; 4], c: &[f64; 4], d: &[f64; 4]) -> Vector3<Q> {
+    let [x, y, z, _] = Q::columns([Q::load(a), Q::load(b), Q::load(c), Q::load(d)]);
     Vector3::new(x, y, z)
 }
 
@@ -107,14 +111,14 @@ impl<'a> Sieve<'a> {
     pub fn sift<Q: Quad>(&self, of: &[u32; 4]) -> Sieved<Q> {
         let (at, half, slack) =
             (splat::<Q>(self.frame.position), splat::<Q>(self.half), Q::splat(self.slack));
-        let (i, j, k, l) = (of[0], of[1], of[2], of[3]);
         let (mesh, r) = (self.mesh, &self.frame.rotation.rows);
-        let normal = lanes::<Q>([mesh.normal(i), mesh.normal(j), mesh.normal(k), mesh.normal(l)]);
-        let (i, j, k, l) = (mesh.corners(i), mesh.corners(j), mesh.corners(k), mesh.corners(l));
+        let (i, j) = (mesh.padded(of[0]), mesh.padded(of[1]));
+        let (k, l) = (mesh.padded(of[2]), mesh.padded(of[3]));
+        let normal = lanes::<Q>(&i.normal, &j.normal, &k.normal, &l.normal);
         let corner = [
-            lanes::<Q>([i[0], j[0], k[0], l[0]]) - at,
-            lanes::<Q>([i[1], j[1], k[1], l[1]]) - at,
-            lanes::<Q>([i[2], j[2], k[2], l[2]]) - at,
+            lanes::<Q>(&i.corners[0], &j.corners[0], &k.corners[0], &l.corners[0]) - at,
+            lanes::<Q>(&i.corners[1], &j.corners[1], &k.corners[1], &l.corners[1]) - at,
+            lanes::<Q>(&i.corners[2], &j.corners[2], &k.corners[2], &l.corners[2]) - at,
         ];
         let height = -normal.dot(corner[0]);
         let axes = Matrix3 {

@@ -22,8 +22,8 @@ pub struct TriMesh {
 struct MeshData {
     vertices: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
-    /// Zero for a triangle without area, which touches nothing.
-    normals: Vec<Vec3>,
+    /// By triangles.
+    facets: Vec<PaddedFacet>,
     neighbours: Vec<[Neighbour; 3]>,
     /// See [`TriMesh::use_flags`].
     use_flags: Vec<u8>,
@@ -33,6 +33,34 @@ struct MeshData {
     bounds: Aabb,
     /// Of a mesh whose vertices have moved.
     links: Option<Box<refit::Links>>,
+}
+
+/// A triangle's corners and normal as searches read them, four numbers at a time: two cache lines.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub(crate) struct PaddedFacet {
+    pub corners: [[f64; 4]; 3],
+    /// Zero for a triangle without area, which touches nothing.
+    pub normal: [f64; 4],
+}
+
+impl PaddedFacet {
+    fn new(corners: [Vec3; 3]) -> Self {
+        let padded = |Vec3 { x, y, z }| [x, y, z, 0.0];
+        Self { corners: corners.map(padded), normal: padded(normal_of(corners)) }
+    }
+
+    #[inline(always)]
+    fn corner(&self, k: usize) -> Vec3 {
+        let [x, y, z, _] = self.corners[k];
+        Vec3::new(x, y, z)
+    }
+
+    #[inline(always)]
+    fn normal(&self) -> Vec3 {
+        let [x, y, z, _] = self.normal;
+        Vec3::new(x, y, z)
+    }
 }
 
 /// What lies beyond an edge of a triangle.
@@ -84,7 +112,8 @@ impl TriMesh {
             return Err(ShapeError { what: "vertex number of a triangle", value: f64::from(*bad) });
         }
         let at = |i: u32| vertices[i as usize];
-        let normals: Vec<Vec3> = triangles.iter().map(|t| normal_of(t.map(at))).collect();
+        let facets: Vec<PaddedFacet> = triangles.iter().map(|t| PaddedFacet::new(t.map(at))).collect();
+        let normals: Vec<Vec3> = facets.iter().map(PaddedFacet::normal).collect();
         let neighbours = neighbours(&vertices, &triangles, &normals);
         let use_flags = use_flags(&vertices, &triangles, &normals);
         let mut first_triangle = vec![u32::MAX; vertices.len()];
@@ -109,7 +138,7 @@ impl TriMesh {
             data: Arc::new(MeshData {
                 vertices,
                 triangles,
-                normals,
+                facets,
                 neighbours,
                 use_flags,
                 first_triangle,
@@ -147,19 +176,26 @@ impl TriMesh {
     /// The corners of triangle `i`.
     #[inline]
     pub fn corners(&self, i: u32) -> [Vec3; 3] {
-        self.data.triangles[i as usize].map(|v| self.data.vertices[v as usize])
+        let facet = self.padded(i);
+        [facet.corner(0), facet.corner(1), facet.corner(2)]
+    }
+
+    /// Triangle `i` as searches read it.
+    #[inline(always)]
+    pub(crate) fn padded(&self, i: u32) -> &PaddedFacet {
+        &self.data.facets[i as usize]
     }
 
     /// Corner `k` of triangle `i`.
     #[inline(always)]
     pub(crate) fn corner(&self, i: u32, k: usize) -> Vec3 {
-        self.data.vertices[self.data.triangles[i as usize][k] as usize]
+        self.padded(i).corner(k)
     }
 
     /// Unit normal of triangle `i`; zero if it has no area.
     #[inline]
     pub fn normal(&self, i: u32) -> Vec3 {
-        self.data.normals[i as usize]
+        self.padded(i).normal()
     }
 
     /// What lies beyond the edges 0–1, 1–2 and 2–0 of triangle `i`.

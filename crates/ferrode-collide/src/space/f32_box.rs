@@ -118,6 +118,28 @@ impl<T: Copy + Default, const FIRST: usize> Pending<T, FIRST> {
         }
     }
 
+    /// Pushes those of four whose bits are set, the last first; does not branch on these.
+    #[inline(always)]
+    pub fn push_set(&mut self, bits: u8, four: &[T; 4]) {
+        let [a, b, c, d] = *four;
+        let bit = |l: u8| usize::from(bits >> l & 1);
+        if let Some(room) = self.first.get_mut(self.len..).and_then(<[T]>::first_chunk_mut::<4>) {
+            // What isn't wanted is written over.
+            let (third, second) = (bit(3), bit(3) + bit(2));
+            let first = second + bit(1);
+            room[0] = d;
+            room[third] = c;
+            room[second] = b;
+            room[first & 3] = a;
+            self.len += first + bit(0);
+        } else {
+            self.push_if(bit(3) != 0, d);
+            self.push_if(bit(2) != 0, c);
+            self.push_if(bit(1) != 0, b);
+            self.push_if(bit(0) != 0, a);
+        }
+    }
+
     #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
         if self.len == FIRST

@@ -10,10 +10,8 @@ use ferrode_math::simd::overlapping;
 pub(crate) struct Four {
     /// Along each axis the lower sides of the four, then the upper ones.
     pub sides: [[[f32; 4]; 2]; 3],
-    /// Another node; of a leaf what its tree says.
-    link: [u32; 4],
-    /// Items in a leaf; zero for a node, and for nothing.
-    count: [u32; 4],
+    /// Another node, or of a leaf what its tree says; and how many items are in a leaf: zero for a node, and for nothing.
+    held: [(u32, u32); 4],
 }
 
 const _: () = assert!(size_of::<Four>() == 128);
@@ -24,7 +22,7 @@ const NONE: u32 = u32::MAX;
 impl Four {
     /// Boxes that overlap nothing.
     const VACANT: Self =
-        Self { sides: [[[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]]; 3], link: [NONE; 4], count: [0; 4] };
+        Self { sides: [[[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]]; 3], held: [(NONE, 0); 4] };
 
     #[inline(always)]
     pub fn bounds(&self, l: usize) -> Box32 {
@@ -34,7 +32,7 @@ impl Four {
     /// Link and count.
     #[inline(always)]
     pub fn holds(&self, l: usize) -> (u32, u32) {
-        (self.link[l & 3], self.count[l & 3])
+        self.held[l & 3]
     }
 
     pub fn is_vacant(&self, l: usize) -> bool {
@@ -43,7 +41,7 @@ impl Four {
 
     fn set(&mut self, l: usize, b: &Box32, link: u32, count: u32) {
         self.set_bounds(l, b);
-        (self.link[l], self.count[l]) = (link, count);
+        self.held[l] = (link, count);
     }
 
     fn set_bounds(&mut self, l: usize, b: &Box32) {
@@ -142,7 +140,7 @@ impl WideTree {
     /// Calls `found` with link and count of each leaf whose box overlaps `around`, in the order of the leaves.
     #[inline]
     pub fn query(&self, around: &Box32, mut found: impl FnMut(u32, u32)) {
-        let mut pending: Pending<(u32, u32)> = Pending::new();
+        let mut pending: Pending<(u32, u32), 32> = Pending::new();
         let Some(mut node) = self.nodes.first() else { return };
         // What has no end would overlap what is vacant.
         let around = Box32 {
@@ -150,10 +148,7 @@ impl WideTree {
             max: around.max.map(|x| if x > f32::MAX { f32::MAX } else { x }),
         };
         loop {
-            let hit = node.overlaps(&around);
-            for l in (0..4).rev() {
-                pending.push_if(hit >> l & 1 != 0, node.holds(l));
-            }
+            pending.push_set(node.overlaps(&around), &node.held);
             loop {
                 let Some((link, count)) = pending.pop() else { return };
                 if count == 0 {

@@ -342,7 +342,7 @@ impl JointModel for Contact {
     }
 
     fn write_rows(&mut self, ends: &Ends<'_>, ctx: &StepContext, out: &mut JointRows<'_>) {
-        let s = self.surface;
+        let s = &self.surface;
         let n = self.point.normal * ends.sign();
         let r1 = self.point.position - ends.a().position;
         let r2 = ends.second.map(|b| self.point.position - b.position);

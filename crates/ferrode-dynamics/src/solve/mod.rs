@@ -55,3 +55,9 @@ pub(crate) fn right_hand_side(row: &Row, span: &JointSpan, fps: f64, free: &[Fre
     }
     rhs
 }
+
+/// [`right_hand_side`] of a row that only the first body has a part in.
+#[inline(always)]
+pub(crate) fn right_hand_side_of_one(row: &Row, fps: f64, free: &FreeMotion) -> f64 {
+    row.c * fps - (row.linear1.dot(free.linear) + row.angular1.dot(free.angular))
+}

@@ -1,11 +1,12 @@
 //! `Quick`: projected successive over-relaxation, in ODE's row order and with ODE's shuffles.
 
-use super::{FreeMotion, Solved, free_motions, right_hand_side};
+use super::{FreeMotion, Solved, free_motions, right_hand_side, right_hand_side_of_one};
 use crate::rows::{NO_FRICTION_INDEX, Row};
 use crate::step::{Island, JointSpan};
 use crate::world::QuickSettings;
 use ferrode_lcp::sor::{
-    InfTimesZero, NO_BODY, SorBody, SorExit, SorParams, SorRow, SorWorkspace, begin_sor_rows, finish_sor,
+    InfTimesZero, LoneRow, NO_BODY, SorBody, SorExit, SorParams, SorRow, SorWorkspace, begin_sor_alone,
+    begin_sor_rows, finish_sor,
 };
 use ferrode_math::random::OdeRandom;
 use ferrode_math::{Mat3, Vec3};
@@ -45,8 +46,6 @@ pub(crate) fn begin(
     work.bodies.extend(
         island.bodies.iter().map(|b| SorBody { inv_mass: b.inv_mass, inv_inertia: flatten(&b.inv_inertia) }),
     );
-    let Island { rows, spans, .. } = island;
-    let rows = SorRows { spans: spans.iter(), rows: rows.iter(), span: None, left: 0, free: &work.free, fps };
     const { assert!(NO_BODY == crate::arena::NIL) };
     let params = SorParams {
         iterations: settings.iterations,
@@ -59,7 +58,27 @@ pub(crate) fn begin(
         dynamic: settings.dynamic,
     };
     let mut random = |n| random.next_below(n);
-    work.begun = begin_sor_rows(&work.bodies, m, rows, &params, &mut random, &mut work.sor).is_ok();
+    let Island { rows, spans, .. } = island;
+    let of_one = |span: &JointSpan| span.bodies == [0, NO_BODY];
+    let begun = match (&work.bodies[..], &work.free[..]) {
+        ([body], [free]) if spans.iter().all(of_one) => {
+            let rows =
+                LoneRows { spans: spans.iter(), rows: rows.iter(), first: 0, end: 0, at: 0, free, fps };
+            begin_sor_alone(body, m, rows, &params, &mut random, &mut work.sor)
+        }
+        _ => {
+            let rows = SorRows {
+                spans: spans.iter(),
+                rows: rows.iter(),
+                span: None,
+                left: 0,
+                free: &work.free,
+                fps,
+            };
+            begin_sor_rows(&work.bodies, m, rows, &params, &mut random, &mut work.sor)
+        }
+    };
+    work.begun = begun.is_ok();
 }
 
 /// Solves the islands that wait.
@@ -124,6 +143,44 @@ impl Iterator for SorRows<'_> {
             hi: row.hi,
             findex,
             body: span.bodies,
+        })
+    }
+}
+
+/// The rows of an island of one body as the solver takes them, made one by one.
+struct LoneRows<'a> {
+    spans: core::slice::Iter<'a, JointSpan>,
+    rows: core::slice::Iter<'a, Row>,
+    /// The span that the next row is in, and the number of that row.
+    first: usize,
+    end: usize,
+    at: usize,
+    free: &'a FreeMotion,
+    fps: f64,
+}
+
+impl Iterator for LoneRows<'_> {
+    type Item = LoneRow;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<LoneRow> {
+        while self.at == self.end {
+            let span = self.spans.next()?;
+            (self.first, self.end) = (span.first, span.first + span.count.rows);
+        }
+        self.at += 1;
+        let row = self.rows.next()?;
+        let (a, b) = (row.linear1, row.angular1);
+        Some(LoneRow {
+            j: [a.x, a.y, a.z, b.x, b.y, b.z],
+            rhs: right_hand_side_of_one(row, self.fps, self.free),
+            cfm: row.cfm * self.fps,
+            lo: row.lo,
+            hi: row.hi,
+            findex: match row.friction_index {
+                NO_FRICTION_INDEX => -1,
+                local => self.first as i32 + local,
+            },
         })
     }
 }

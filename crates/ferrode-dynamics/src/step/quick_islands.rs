@@ -52,26 +52,22 @@ impl World {
             if company.len() == count {
                 company.push(Member::default());
             }
-            self.begin_quick(bodies, joints, &ctx, random, &mut company[count]);
+            // Who only looks destroys none.
+            let survivors = if looks_only { None } else { self.survivors(bodies, joints) };
+            let member = &mut company[count];
+            match survivors {
+                Some((bodies, joints)) => self.gather(&bodies, &joints, &mut member.island),
+                None => self.gather(bodies, joints, &mut member.island),
+            }
+            self.begin_quick(&ctx, random, member);
             count += 1;
         }
         self.end_quick(h, &mut company[..count], &mut observer, report);
     }
 
-    /// Writes an island's rows, and solves it if these are many.
-    fn begin_quick(
-        &mut self,
-        bodies: &[u32],
-        joints: &[u32],
-        ctx: &StepContext,
-        random: &mut OdeRandom,
-        member: &mut Member,
-    ) {
+    /// Writes the rows of an island that is gathered, and solves it if these are many.
+    fn begin_quick(&mut self, ctx: &StepContext, random: &mut OdeRandom, member: &mut Member) {
         let Member { island, quick } = member;
-        match self.survivors(bodies, joints) {
-            Some((bodies, joints)) => self.gather(&bodies, &joints, island),
-            None => self.gather(bodies, joints, island),
-        }
         self.apply_gravity(island);
         self.apply_gyroscopic_torques(island, ctx.h);
         self.count_rows(island, ctx);

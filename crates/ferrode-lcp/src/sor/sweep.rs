@@ -61,6 +61,19 @@ impl<Q: Quad> Six<Q> {
         (head.fold() + tail.add_first(more)).sum()
     }
 
+    /// The dot product of two, plus `more`.
+    #[inline(always)]
+    pub fn dot_one(j: Self, a: Self, more: f64) -> f64 {
+        ((j.head * a.head).fold() + (j.tail * a.tail).add_first(more)).sum()
+    }
+
+    /// Writes the first four to one place, and the other two to another.
+    #[inline(always)]
+    pub fn store_parts(self, head: &mut [f64; 4], tail: &mut [f64; 2]) {
+        self.head.store(head);
+        self.tail.store(tail);
+    }
+
     /// The largest component by size.
     #[inline(always)]
     pub fn largest(self) -> f64 {
@@ -131,14 +144,6 @@ impl PackedRow {
         Six { head: Q::load(&self.head[n]), tail: Q::Pair::load(&self.tail[n]) }
     }
 
-    /// A row whose visit changes no bit of a body: it adds −0 times 0. It is scaled by the force that is always 1, and wants 1 but has no room.
-    #[inline(always)]
-    pub fn without_effect() -> Self {
-        let mut row = Self { rhs: 1.0, ..Self::default() };
-        (row.head[1], row.tail[1]) = ([-0.0; 4], [-0.0; 2]);
-        row
-    }
-
     /// The first four numbers of one of its four vectors.
     #[inline(always)]
     pub fn head(&self, n: usize) -> &[f64; 4] {
@@ -147,9 +152,8 @@ impl PackedRow {
 
     /// The last two numbers of each of the first body's vectors.
     #[inline(always)]
-    pub fn tails(&self) -> [f64; 4] {
-        let [[a, b], [c, d], ..] = self.tail;
-        [a, b, c, d]
+    pub fn tails(&self) -> [[f64; 2]; 2] {
+        [self.tail[0], self.tail[1]]
     }
 
     /// The right-hand side, the CFM and the bounds.

@@ -31,7 +31,7 @@ pub fn create(
     record.joint_type.set(Some(joint_type));
     if let Some(group) = group {
         record.grouped.set(true);
-        group.joints.borrow_mut().push(handle);
+        group.joints.borrow_mut().push(Link::to(record));
     }
     Ok(handle)
 }

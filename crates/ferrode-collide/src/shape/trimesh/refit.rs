@@ -1,7 +1,7 @@
 //! Meshes whose vertices move while the triangles stay: cloth, terrain that is dug, animated bodies.
 
 use super::{
-    Edge, MeshData, Neighbour, ShapeError, TriMesh, check_vertices, edges_by_ends, normal_of, place,
+    Edge, MeshData, Neighbour, PaddedFacet, ShapeError, TriMesh, check_vertices, edges_by_ends, place,
 };
 use ferrode_math::{Aabb, Vec3};
 use std::sync::Arc;
@@ -82,12 +82,13 @@ impl MeshData {
     fn refit(&mut self, links: &Links) {
         let (vertices, triangles) = (&self.vertices, &self.triangles);
         let at = |v: u32| vertices[v as usize];
-        for (normal, t) in self.normals.iter_mut().zip(triangles) {
-            *normal = normal_of(t.map(at));
+        for (facet, t) in self.facets.iter_mut().zip(triangles) {
+            *facet = PaddedFacet::new(t.map(at));
         }
         self.neighbours.fill([Neighbour::None; 3]);
         for [a, b] in &links.pairs {
-            let (na, nb) = (self.normals[a.triangle as usize], self.normals[b.triangle as usize]);
+            let normal = |side: &Side| self.facets[side.triangle as usize].normal();
+            let (na, nb) = (normal(a), normal(b));
             if na == Vec3::ZERO || nb == Vec3::ZERO {
                 continue;
             }
@@ -130,6 +131,8 @@ mod tests {
         assert_eq!(a.bounds(), b.bounds());
         for t in 0..a.triangles().len() as u32 {
             assert_eq!(a.normal(t), b.normal(t));
+            let corners = a.triangles()[t as usize].map(|v| a.vertices()[v as usize]);
+            assert_eq!((a.corners(t), b.corners(t)), (corners, corners));
             assert_eq!(a.neighbours(t), b.neighbours(t), "triangle {t}");
         }
     }
