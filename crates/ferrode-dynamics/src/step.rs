@@ -384,8 +384,12 @@ impl World {
             island.place[*index as usize] = place as u32;
         }
         island.slots.extend_from_slice(bodies);
-        island.bodies.extend(bodies.iter().map(|index| SolverBody::not_turned(self.bodies.at(*index))));
-        four::turn_inertia(&mut island.bodies);
+        if bodies.len() < four::WORTH_LANES {
+            island.bodies.extend(bodies.iter().map(|index| SolverBody::new(self.bodies.at(*index))));
+        } else {
+            island.bodies.extend(bodies.iter().map(|index| SolverBody::not_turned(self.bodies.at(*index))));
+            four::turn_inertia(&mut island.bodies);
+        }
         island.movable = bodies.len();
         for joint in joints {
             let ends = self.joints.at(*joint).nodes.map(|node| node.body);
@@ -487,7 +491,12 @@ impl World {
         let bodies = &island.slots[..island.movable];
         let mut moved = moved;
         let is_watched = |slot: &u32| self.bodies.at(*slot).moved.is_some();
-        if stepper == Stepper::Direct && !moved && observer.is_none() && !bodies.iter().any(is_watched) {
+        if stepper == Stepper::Direct
+            && !moved
+            && bodies.len() >= four::WORTH_LANES
+            && observer.is_none()
+            && !bodies.iter().any(is_watched)
+        {
             // Nobody can tell in which order.
             four::advance(self, bodies, &island.bodies[..island.movable], h);
             moved = true;
@@ -544,11 +553,17 @@ fn ends_of<'a>(joint: &Joint, span: &JointSpan, bodies: &'a [SolverBody]) -> End
 }
 
 impl SolverBody {
+    #[inline(always)]
     fn new(body: &Body) -> Self {
-        let mut new = [Self::not_turned(body)];
-        four::turn_inertia(&mut new);
-        let [new] = new;
-        new
+        let r = body.frame.rotation;
+        let immovable = body.quarantined || body.is_kinematic();
+        Self {
+            frame: body.frame,
+            inv_mass: if immovable { 0.0 } else { body.inv_mass },
+            inv_inertia: if immovable { Mat3::ZERO } else { r * body.inv_inertia * r.transpose() },
+            force: body.force,
+            torque: body.torque,
+        }
     }
 
     /// With the inverse inertia in the body's own frame.

@@ -81,6 +81,9 @@ fn where_on<Q: Quad>(on: Q, x: Q) -> Q {
     Q::select(Q::ZERO.lt(on), x, Q::ZERO)
 }
 
+/// So many bodies are worth lanes: fewer are moved in and out of them for longer than they are computed with.
+pub(super) const WORTH_LANES: usize = 3;
+
 /// Turns the bodies' inverse inertia, as it is in their own frames, into the world's.
 pub(super) fn turn_inertia(bodies: &mut [SolverBody]) {
     dispatch_quads(TurnInertia(bodies));
@@ -126,7 +129,16 @@ fn turn_four<Q: Quad>(bodies: &mut [SolverBody; 4]) {
 
 /// Adds the gyroscopic torques of a step of `h` seconds; `slots` are the world's of the bodies.
 pub(super) fn add_gyroscopic_torques(world: &World, slots: &[u32], bodies: &mut [SolverBody], h: f64) {
-    dispatch_quads(GyroscopicTorques { world, slots, bodies, h });
+    if bodies.len() >= WORTH_LANES {
+        dispatch_quads(GyroscopicTorques { world, slots, bodies, h });
+        return;
+    }
+    for (slot, solver_body) in slots.iter().zip(bodies) {
+        let (body, velocity) = (world.bodies.at(*slot), solver_body.frame.angular_velocity);
+        if body.gyroscopic_mode && !body.is_kinematic() && velocity != Vec3::ZERO {
+            solver_body.torque += gyroscopic::torque(&body.inertia_world(), velocity, h);
+        }
+    }
 }
 
 struct GyroscopicTorques<'a> {
