@@ -75,11 +75,14 @@ impl<T> Arena<T> {
         self.slots.len()
     }
 
+    #[inline]
     pub fn insert(&mut self, value: T) -> RawKey {
         let serial = self.serials.take();
         let index = match self.free.pop() {
             Some(index) => {
-                self.slots[index as usize] = Slot { serial, value: Some(value) };
+                let slot = &mut self.slots[index as usize];
+                slot.serial = serial;
+                slot.value = Some(value);
                 index
             }
             None => {

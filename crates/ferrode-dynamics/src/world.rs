@@ -511,7 +511,9 @@ impl World {
     /// A joint at the head of the world's list.
     pub(crate) fn push_joint(&mut self, kind: JointKind, group: u32, user_data: u64) -> JointKey {
         let next = self.joint_list.first;
-        let key = self.joints.insert(Joint { group, next, user_data, ..Joint::new(kind) });
+        let mut joint = Joint::new(kind);
+        (joint.group, joint.next, joint.user_data) = (group, next, user_data);
+        let key = self.joints.insert(joint);
         if next != NIL {
             self.joints.at_mut(next).prev = key.index;
         }

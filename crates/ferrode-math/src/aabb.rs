@@ -24,6 +24,7 @@ impl Aabb {
     }
 
     /// The box with the given centre and half side lengths.
+    #[inline]
     pub fn from_center(center: Vec3, half: Vec3) -> Self {
         Self { min: center - half, max: center + half }
     }

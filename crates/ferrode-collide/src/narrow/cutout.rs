@@ -17,7 +17,8 @@ pub(super) struct Cutout {
 
 impl Cutout {
     /// The polygon with the given corners, the first twenty of them.
-    #[inline]
+    // Where it stays: it is not small.
+    #[inline(always)]
     pub fn new(corners: &[Vec3]) -> Self {
         let mut cutout = Self { points: [[Vec3::ZERO; MOST]; 2], now: false, count: 0 };
         for (to, from) in cutout.points[0].iter_mut().zip(corners) {

@@ -83,6 +83,7 @@ pub(super) enum Place {
 }
 
 impl FacetContacts {
+    #[inline(always)]
     fn new() -> Self {
         Self { normal: Vec3::Z, place: Place::Deepest, list: [(Vec3::ZERO, 0.0); MOST], count: 0 }
     }

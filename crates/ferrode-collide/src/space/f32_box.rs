@@ -3,17 +3,28 @@
 use ferrode_math::{Aabb, Vec3};
 
 /// The largest `f32` not above `x`.
-#[inline]
+#[inline(always)]
 pub(crate) fn down(x: f64) -> f32 {
     let y = x as f32;
-    if f64::from(y) > x { y.next_down() } else { y }
+    towards(y, f64::from(y) > x, u32::MAX)
 }
 
 /// The smallest `f32` not below `x`.
-#[inline]
+#[inline(always)]
 pub(crate) fn up(x: f64) -> f32 {
     let y = x as f32;
-    if f64::from(y) < x { y.next_up() } else { y }
+    towards(y, f64::from(y) < x, 1)
+}
+
+/// `y`, or where `wanted` the next number up, for a `step` of 1, or down, for −1. Which of them is as likely as not, so nothing branches on it.
+/// A zero is left only on its own side: it has been rounded towards zero.
+#[inline(always)]
+fn towards(y: f32, wanted: bool, step: u32) -> f32 {
+    let bits = y.to_bits();
+    // Numbers below zero have larger bits the lower they are.
+    let negative = (bits.cast_signed() >> 31).cast_unsigned();
+    let step = (step ^ negative).wrapping_sub(negative);
+    f32::from_bits(bits.wrapping_add(step & u32::from(wanted).wrapping_neg()))
 }
 
 /// A box in single precision.
@@ -149,5 +160,25 @@ impl<T: Copy + Default, const FIRST: usize> Pending<T, FIRST> {
         }
         self.len = self.len.checked_sub(1)?;
         Some(self.first[self.len])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_rounded_to_the_side_asked_for() {
+        let tiny = f64::from(f32::from_bits(1));
+        let halves = [0.5, 0.25, 1.5, 0.999_999_99, 1.0, 1.000_000_01, 16_777_217.0, 0.1, 1e-30, 1e30];
+        let edges = [0.0, tiny, 0.4 * tiny, 0.6 * tiny, 1e-300, f64::MIN_POSITIVE];
+        let ends = [f64::from(f32::MAX), f64::from(f32::MAX) * 1.000_000_01, 1e300, f64::INFINITY];
+        for x in halves.into_iter().chain(edges).chain(ends).flat_map(|x| [x, -x]) {
+            let (low, high) = (down(x), up(x));
+            assert!(f64::from(low) <= x && x <= f64::from(high), "{x}: {low} {high}");
+            assert!(f64::from(low.next_up()) > x || low == f32::INFINITY, "{x}: {low}");
+            assert!(f64::from(high.next_down()) < x || high == f32::NEG_INFINITY, "{x}: {high}");
+        }
+        assert!(down(f64::NAN).is_nan() && up(f64::NAN).is_nan());
     }
 }

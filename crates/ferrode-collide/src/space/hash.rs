@@ -45,16 +45,19 @@ impl HashSpace {
         (self.min_level, self.max_level)
     }
 
-    /// The level of a box: 2^(level−1) ≤ largest side < 2^level, at least the smallest. `None` if it is too large.
-    fn level(&self, aabb: &Aabb) -> Option<i32> {
+    /// The level of a box: 2^(level−1) ≤ largest side < 2^level, at least the smallest; and its first and last cell there. `None` if it is too large.
+    #[inline]
+    fn place(&self, aabb: &Aabb) -> Option<(i32, [i64; 3], [i64; 3])> {
         if !aabb.is_finite() {
             return None;
         }
         let e = aabb.extent();
         let side = e.x.max(e.y).max(e.z);
         let level = if side > 0.0 { exponent(side).max(self.min_level) } else { self.min_level };
-        (level <= self.max_level && cell(aabb.min, level).is_some() && cell(aabb.max, level).is_some())
-            .then_some(level)
+        if level > self.max_level {
+            return None;
+        }
+        Some((level, cell(aabb.min, level)?, cell(aabb.max, level)?))
     }
 }
 
@@ -72,6 +75,7 @@ fn power_of_two(k: i32) -> f64 {
 }
 
 /// The cell of a point. `None` beyond the range of whole numbers: such a geom counts as too large.
+#[inline]
 fn cell(p: Vec3, level: i32) -> Option<[i64; 3]> {
     let scale = power_of_two(-level);
     let mut c = [0; 3];
@@ -178,7 +182,7 @@ impl HashSpace {
             if !p.enabled {
                 continue;
             }
-            match self.level(&p.aabb).and_then(|l| Some((l, cell(p.aabb.min, l)?, cell(p.aabb.max, l)?))) {
+            match self.place(&p.aabb) {
                 Some((level, low, high)) => {
                     highest = highest.max(level);
                     let index = s.entries.len() as u32;

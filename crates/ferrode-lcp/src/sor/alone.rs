@@ -131,6 +131,8 @@ impl Alone {
         let (order, table) = self.begin(count, params);
         let (mut free, mut bound) = (0, 0);
         let mut friction = NO_ORDER;
+        // Room for both one after the other.
+        let mut places = [EMPTY; 2 * PLACES];
         for (row, r) in rows.take(count).enumerate() {
             check_bounds(row, r.findex, r.lo, r.hi, count)?;
             let j = Six::<Q>::load(&r.j);
@@ -144,7 +146,7 @@ impl Alone {
                 bound += 1;
                 (-r.hi.abs(), r.hi.abs(), r.findex as u8)
             } else {
-                order[free % PLACES] = row as u8;
+                places[free % PLACES] = row as u8;
                 free += 1;
                 (r.lo, r.hi, ALWAYS)
             };
@@ -161,9 +163,8 @@ impl Alone {
             table.scale[row % PLACES] = scale;
         }
         check_len("rows", free + bound, count)?;
-        for (to, from) in order[free % PLACES..].iter_mut().zip(friction) {
-            *to = from;
-        }
+        places[free % PLACES..][..PLACES].copy_from_slice(&friction);
+        order.copy_from_slice(&places[..PLACES]);
         Ok(())
     }
 
